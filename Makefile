@@ -1,0 +1,50 @@
+# `make demo` and `make test` set everything up themselves; they need Python 3.11 or newer, and make.
+
+VENV := .venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.installed
+FIND_PYTHON = for python in python3.11 python3 python3.12 python3.13 python; do \
+	$$python -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2>/dev/null \
+	&& echo $$python && break; done
+
+.PHONY: help setup check test demo bench clean
+
+help:
+	@echo "make setup   make .venv and install dynastar with its tools into it"
+	@echo "make demo    drive across the office; pictures and numbers in out/demo"
+	@echo "make test    run the tests (those on public data, too, where DYNASTAR_DATA has it)"
+	@echo "make check   ruff, mypy, import-linter"
+	@echo "make bench   the suites movingai (needs DYNASTAR_DATA) and paper; JSON in out/bench"
+	@echo "make clean   remove .venv, out and caches"
+
+setup: $(STAMP)
+
+$(STAMP): pyproject.toml
+	@python=$$($(FIND_PYTHON)); \
+	test -n "$$python" || { echo "dynastar needs Python 3.11 or newer with venv" \
+	"(Debian: apt-get install python3 python3-venv)" >&2; exit 2; }; \
+	test -x $(BIN)/python || $$python -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[dev]"
+	@touch $@
+
+check: setup
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+test: setup
+	$(BIN)/python -m pytest -n 2
+
+demo: setup
+	$(BIN)/dynastar run examples/office/office.toml --out out/demo
+
+bench: setup
+	@mkdir -p out/bench
+	$(BIN)/dynastar bench movingai --json-out out/bench/movingai.json
+	$(BIN)/dynastar bench paper --missions 500 --json-out out/bench/paper.json
+
+clean:
+	rm -rf $(VENV) out build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf .import_linter_cache
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +

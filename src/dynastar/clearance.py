@@ -1,0 +1,75 @@
+"""How far it is to what is blocked: distance fields in metres, and exact inflation."""
+
+import math
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+Mask = npt.NDArray[np.bool_]
+Field = npt.NDArray[np.float32]
+
+FAR = 1e9  # m, the clearance where nothing is blocked
+
+
+def distance_field(blocked: npt.ArrayLike, resolution: float) -> Field:
+    """Metres from every cell's centre to the centre of the nearest blocked cell.
+
+    ``blocked`` is [rows, columns], ``resolution`` the side of a cell in metres; the result is
+    float32 of the same shape, exact but for its rounding, and ``FAR`` everywhere if nothing is
+    blocked. What lies outside the map does not count.
+    """
+    mask = np.asarray(blocked, dtype=bool)
+    if not mask.any():
+        return np.full(mask.shape, FAR, np.float32)
+    free = np.ascontiguousarray(~mask).view(np.uint8)
+    field = cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    return np.asarray(field * np.float32(resolution), dtype=np.float32)
+
+
+def update_window(
+    field: Field,
+    blocked: Mask,
+    resolution: float,
+    row0: int,
+    col0: int,
+    rows: int,
+    cols: int,
+    cap: float,
+) -> None:
+    """Brings ``field`` up to date after ``blocked`` changed in a window, in place.
+
+    ``field`` and ``blocked`` are [rows, columns] of the whole map; the window starts at
+    (row0, col0). Recomputed is what lies within ``cap`` metres of the window, capped at ``cap``: a
+    field that was ``min(distance_field, cap)`` before is so again.
+    """
+    reach = math.ceil(cap / resolution)
+    top, left = max(row0 - reach, 0), max(col0 - reach, 0)
+    bottom, right = row0 + rows + reach, col0 + cols + reach
+    seen_top, seen_left = max(top - reach, 0), max(left - reach, 0)
+    near = distance_field(blocked[seen_top : bottom + reach, seen_left : right + reach], resolution)
+    inner = near[top - seen_top : bottom - seen_top, left - seen_left : right - seen_left]
+    np.minimum(inner, np.float32(cap), out=field[top:bottom, left:right])
+
+
+def inflate(blocked: npt.ArrayLike, radius_cells: float, outside_blocked: bool = True) -> Mask:
+    """Where the centre of a disc of ``radius_cells`` cells may not be, exactly.
+
+    A cell is inflated if it is blocked, or its centre is nearer than the radius to the square of a
+    blocked cell. On a grid inflated so, a step to a neighbour, diagonal ones between free cells
+    included, keeps the radius all the way. ``outside_blocked`` counts what lies beyond the map as
+    blocked, so that the disc stays on it.
+    """
+    mask = np.ascontiguousarray(blocked, dtype=bool)
+    reach = math.ceil(radius_cells + 0.5) - 1  # cells with (reach - 0.5) < radius
+    if radius_cells <= 0.0 or reach < 1:
+        return mask.copy()
+    away = np.maximum(np.abs(np.arange(-reach, reach + 1)) - 0.5, 0.0)
+    disc = np.hypot(away[:, None], away[None, :]) < radius_cells
+    grown = cv2.dilate(
+        mask.view(np.uint8),
+        disc.astype(np.uint8),
+        borderType=cv2.BORDER_CONSTANT,
+        borderValue=int(outside_blocked),
+    )
+    return grown.view(np.bool_)

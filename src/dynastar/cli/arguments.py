@@ -1,0 +1,179 @@
+"""What may be typed: the commands, their options, their help."""
+
+import argparse
+import math
+import re
+from pathlib import Path
+from typing import NoReturn
+
+from dynastar import __version__
+
+PLAN_EXAMPLES = """\
+examples:
+  dynastar plan office.yaml --start 2 2 --goal 38 23 --radius 0.25
+  dynastar plan office.yaml --start 2 2 --goal 38 23 --planner astar --out plan.png
+  dynastar plan AR0011SR.map --start 239 357 --goal 194 312 --json
+
+For ROS maps X Y are metres in the map's frame. For MovingAI .map files they are integers, the
+file's column and row; a cell is 1 m, and the path has cell centres at + 0.5."""
+
+RUN_EXAMPLES = """\
+examples:
+  dynastar run examples/office/office.toml --out out/office
+  dynastar run office.toml --seed 7 --preset paper --json > summary.json
+
+Writes figure.png, animation.gif, summary.json, episode.npz and config.json into DIR."""
+
+BENCH_EXAMPLES = """\
+examples:
+  dynastar bench movingai --data data/movingai
+  dynastar bench paper --missions 500 --workers 2 --json-out paper.json
+  dynastar bench paper --select 17              # mission 17 alone, as often as you like"""
+
+EXAMPLES = """\
+examples:
+  dynastar plan office.yaml --start 2 2 --goal 38 23 --radius 0.25
+  dynastar run examples/office/office.toml --out out/office
+  dynastar bench paper --missions 20
+  dynastar warmup"""
+
+
+class OneLineParser(argparse.ArgumentParser):
+    """A parser that says what is wrong in one line, and takes -1e3 and -inf as numbers."""
+
+    def __init__(self, **settings: object) -> None:
+        settings.setdefault("formatter_class", argparse.RawDescriptionHelpFormatter)
+        settings.setdefault("allow_abbrev", False)
+        super().__init__(**settings)  # type: ignore[arg-type]
+        self._negative_number_matcher = re.compile(r"^-(\d|\.\d|inf|nan)", re.IGNORECASE)
+
+    def error(self, message: str) -> NoReturn:
+        """Exits with status 2 and ``message``."""
+        self.exit(2, f"{self.prog}: {' '.join(message.split())} (see {self.prog} --help)\n")
+
+
+def number(text: str) -> float:
+    """A finite number."""
+    value = float(text)
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a finite number")
+    return value
+
+
+def distance(text: str) -> float:
+    """A finite number of metres, 0 or more."""
+    value = number(text)
+    if value < 0.0:
+        raise argparse.ArgumentTypeError(f"{text!r} is negative: expected 0 m or more")
+    return value
+
+
+def count(text: str) -> int:
+    """A whole number, 1 or more."""
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is too small: expected 1 or more")
+    return value
+
+
+def seed(text: str) -> int:
+    """A whole number, 0 or more."""
+    value = int(text)
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"{text!r} is negative: expected 0 or more")
+    return value
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """The parser of all commands; the result's ``command`` names a module of this room."""
+    parser = OneLineParser(
+        prog="dynastar",
+        description="Navigation for differential-drive robots: an improved A* plans, "
+        "a dynamic window drives.",
+        epilog=EXAMPLES,
+    )
+    parser.add_argument("--version", action="version", version=f"dynastar {__version__}")
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    _add_plan(commands)
+    _add_run(commands)
+    _add_bench(commands)
+    commands.add_parser(
+        "warmup",
+        help="compile everything now, so that the first mission does not wait",
+        description="Compiles the kernels of planning, sensing and driving into numba's cache.",
+    )
+    return parser
+
+
+def _add_plan(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
+    plan = commands.add_parser(
+        "plan",
+        help="find a path on a map",
+        description="Finds a smoothed path on a map that keeps a disc clear of obstacles.",
+        epilog=PLAN_EXAMPLES,
+    )
+    plan.add_argument("map", metavar="MAP", type=Path, help=".yaml (ROS), .map, .npy or .txt")
+    plan.add_argument("--start", nargs=2, type=number, required=True, metavar=("X", "Y"))
+    plan.add_argument("--goal", nargs=2, type=number, required=True, metavar=("X", "Y"))
+    plan.add_argument(
+        "--planner",
+        default="improved",
+        metavar="NAME",
+        help="dijkstra, astar, weighted or improved (the default)",
+    )
+    plan.add_argument(
+        "--radius", type=distance, default=0.0, metavar="R", help="of the robot, m (default 0)"
+    )
+    plan.add_argument(
+        "--unknown",
+        choices=("free", "blocked"),
+        default="blocked",
+        help="what unknown cells are taken for (default blocked)",
+    )
+    plan.add_argument("--json", action="store_true", help="JSON on stdout instead of a table")
+    plan.add_argument("--out", type=Path, metavar="PNG", help="draw the plan into this picture")
+
+
+def _add_run(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
+    run = commands.add_parser(
+        "run",
+        help="drive a scenario in simulation",
+        description="Drives a scenario in simulation; draws it and measures it. "
+        "Exit status 0 only for an arrival without contact.",
+        epilog=RUN_EXAMPLES,
+    )
+    run.add_argument("scenario", metavar="SCENARIO.toml", type=Path)
+    run.add_argument("--out", type=Path, metavar="DIR", help="default out/<scenario's name>")
+    run.add_argument("--seed", type=seed, metavar="N", help="instead of the scenario's")
+    run.add_argument("--preset", choices=("default", "paper"), help="instead of the scenario's")
+    run.add_argument("--json", action="store_true", help="JSON on stdout instead of a table")
+    run.add_argument("--no-gif", action="store_true", help="leave out the animation")
+
+
+def _add_bench(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
+    bench = commands.add_parser(
+        "bench",
+        help="run a suite of missions",
+        description="Runs a suite of missions, movingai or paper, and counts every failure.",
+        epilog=BENCH_EXAMPLES,
+    )
+    bench.add_argument("suite", metavar="SUITE", help="movingai or paper")
+    bench.add_argument(
+        "--data",
+        type=Path,
+        metavar="DIR",
+        help="the suite's folder or the one above it (default $DYNASTAR_DATA)",
+    )
+    bench.add_argument(
+        "--missions", type=count, metavar="N", help="run N missions, those left out not counted"
+    )
+    bench.add_argument("--repeat", type=count, default=1, metavar="N", help="each mission N times")
+    bench.add_argument(
+        "--select", metavar="A:B:C", help="a slice over the suite's own numbers, or one of them"
+    )
+    bench.add_argument("--seed", type=seed, default=0, metavar="N")
+    bench.add_argument("--preset", choices=("default", "paper"), default="default")
+    bench.add_argument("--workers", type=count, metavar="N", help="processes (default: all cores)")
+    bench.add_argument(
+        "--json-out", metavar="FILE", help="the result with a row for every mission; - is stdout"
+    )

@@ -1,0 +1,62 @@
+"""``dynastar run``: a scenario driven in simulation, drawn and measured."""
+
+import argparse
+import re
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from dynastar import io, metrics
+from dynastar.cli.show import as_json, as_table
+from dynastar.episode import Episode
+from dynastar.errors import ScenarioError
+from dynastar.io.files import write_json
+from dynastar.simulation import Scenario
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Runs the scenario, writes its folder and prints its summary."""
+    scenario = io.load_scenario(arguments.scenario)
+    if arguments.seed is not None:
+        scenario = replace(scenario, seed=arguments.seed)
+    if arguments.preset is not None:
+        scenario = replace(scenario, preset=arguments.preset)
+    folder = arguments.out or Path("out", safe_name(scenario))
+    make_folder(folder)
+    episode = io.run(scenario, progress=True)
+    summary = metrics.measure(episode)._asdict()
+    write_folder(folder, episode, summary, gif=not arguments.no_gif)
+    print(f"pictures, numbers and the episode are in {folder}", file=sys.stderr)
+    print(as_json(summary) if arguments.json else as_table(summary))
+    arrived = summary["outcome"] == "arrived" and not episode.contact
+    return 0 if arrived else 1
+
+
+def safe_name(scenario: Scenario) -> str:
+    """The scenario's name as the name of a folder."""
+    return re.sub(r"[^\w-]+", "_", scenario.name).strip("_") or "scenario"
+
+
+def make_folder(folder: Path) -> None:
+    """Makes ``folder`` before anything is driven; ScenarioError if it cannot be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ScenarioError(
+            f"--out {folder}: cannot make this folder ({error.strerror}); name another"
+        ) from error
+
+
+def write_folder(folder: Path, episode: Episode, summary: dict[str, Any], gif: bool) -> None:
+    """Writes figure.png, summary.json, config.json, episode.npz and, if asked, animation.gif."""
+    from dynastar.viewer.figure import draw_episode
+
+    write_json(folder / "summary.json", summary)
+    write_json(folder / "config.json", {"scenario": episode.scenario, "config": episode.config})
+    io.save_episode(episode, folder / "episode.npz")
+    draw_episode(episode, folder / "figure.png")
+    if gif:
+        from dynastar.viewer.animation import animate_episode
+
+        animate_episode(episode, folder / "animation.gif", progress=True)

@@ -1,0 +1,159 @@
+"""One way to read settings: declared types and ranges, and the nearest right name for a wrong one.
+
+A configuration is a NamedTuple whose fields are annotated with what they mean::
+
+    class DwaConfig(NamedTuple):
+        horizon: Annotated[float, Field("how far ahead to score", "s", 0.1, 30.0)] = 3.0
+
+``checked`` turns a plain mapping (from TOML, the command line, ROS parameters) into such a tuple.
+"""
+
+import difflib
+import math
+import reprlib
+import types
+from collections.abc import Iterable, Mapping
+from numbers import Integral, Real
+from typing import (
+    Annotated,
+    Any,
+    Literal,
+    NamedTuple,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
+
+from dynastar.errors import ConfigError
+
+T = TypeVar("T")
+
+
+class Field(NamedTuple):
+    """What a setting means: one line of doc, its unit, and the smallest and largest legal value."""
+
+    doc: str
+    unit: str = ""
+    low: float = -math.inf
+    high: float = math.inf
+
+
+_ANY = Field("")  # a value of any size
+_REPR = reprlib.Repr()  # looks at the start of long and deep values only
+_REPR.maxstring = _REPR.maxother = _REPR.maxlong = 80
+_REPR.maxlevel = 3
+
+
+def shown(value: Any) -> str:
+    """``value`` as it would be written in Python, cut to what fits a message."""
+    try:
+        text = _REPR.repr(value)
+    except ValueError:  # an integer of thousands of digits
+        text = f"a huge {type(value).__name__}"
+    return text if len(text) <= 80 else f"{text[:77]}..."
+
+
+def nearest(name: str, legal: Iterable[str]) -> str:
+    """`` (did you mean 'x'?)`` for the legal name nearest to ``name``, or the list of them."""
+    names = list(legal)
+    close = difflib.get_close_matches(name[:80], names, n=1, cutoff=0.5)
+    if close:
+        return f" (did you mean '{close[0]}'?)"
+    return f" (legal: {', '.join(sorted(names))})" if names else ""
+
+
+def choose(name: str, table: Mapping[str, T], what: str) -> T:
+    """``table[name]``, or a ConfigError that names the nearest entry."""
+    if name not in table:
+        raise ConfigError(f"unknown {what} '{name}'{nearest(name, table)}")
+    return table[name]
+
+
+def checked(cls: type[T], values: Mapping[str, Any], where: str = "") -> T:
+    """An instance of the NamedTuple ``cls`` with ``values`` cast and checked over its defaults.
+
+    ``where`` is the dotted name of the table the values come from and leads every message.
+    Raises ConfigError for an unknown or missing key, a wrong type, or a value out of range.
+    """
+    if not isinstance(values, Mapping):
+        raise ConfigError(f"{where or cls.__name__}: expected a table, got {shown(values)}")
+    hints = get_type_hints(cls, include_extras=True)
+    dotted = f"{where}." if where else ""
+    for key in values:
+        if key not in hints:
+            raise ConfigError(f"unknown key '{dotted}{key!s:.80}'{nearest(str(key), hints)}")
+    defaults: dict[str, Any] = getattr(cls, "_field_defaults", {})
+    for key in hints:
+        if key not in values and key not in defaults:
+            raise ConfigError(f"missing key '{dotted}{key}'")
+    cast = {key: _cast(hints[key], value, f"{dotted}{key}") for key, value in values.items()}
+    return cls(**cast)
+
+
+def _cast(hint: Any, value: Any, where: str, field: Field = _ANY) -> Any:
+    if get_origin(hint) is Annotated:
+        hint, *notes = get_args(hint)
+        field = next((note for note in notes if isinstance(note, Field)), field)
+    origin = get_origin(hint)
+    if origin in (Union, types.UnionType):
+        options = get_args(hint)
+        if value is None and type(None) in options:
+            return None
+        return _cast(next(o for o in options if o is not type(None)), value, where, field)
+    if origin is Literal:
+        options = get_args(hint)
+        if value not in options:
+            raise ConfigError(
+                f"'{where}' is {shown(value)}: expected one of {', '.join(map(repr, options))}"
+            )
+        return value
+    if origin is tuple:
+        return _cast_tuple(hint, value, where, field)
+    if hasattr(hint, "_field_defaults"):
+        return value if isinstance(value, hint) else checked(hint, value, where)
+    if hint is bool:
+        if not isinstance(value, bool):
+            raise ConfigError(f"'{where}' is {shown(value)}: expected true or false")
+        return value
+    if hint is int or hint is float:
+        return _cast_number(hint, value, where, field)
+    if hint is str:
+        if not isinstance(value, str):
+            raise ConfigError(f"'{where}' is {shown(value)}: expected a string")
+        return value
+    return value
+
+
+def _cast_tuple(hint: Any, value: Any, where: str, field: Field) -> tuple[Any, ...]:
+    if isinstance(value, str | bytes | Mapping) or not isinstance(value, Iterable):
+        raise ConfigError(f"'{where}' is {shown(value)}: expected a list")
+    items, kinds = list(value), get_args(hint)
+    if len(kinds) == 2 and kinds[1] is Ellipsis:
+        kinds = (kinds[0],) * len(items)
+    if len(items) != len(kinds):
+        raise ConfigError(f"'{where}' has {len(items)} values: expected {len(kinds)}")
+    return tuple(
+        _cast(kind, item, f"{where}[{i}]", field)
+        for i, (kind, item) in enumerate(zip(kinds, items, strict=True))
+    )
+
+
+def _cast_number(hint: Any, value: Any, where: str, field: Field) -> float:
+    unit = f" {field.unit}" if field.unit else ""
+    legal = f"from {field.low:g} to {field.high:g}{unit}"
+    if not _is_number(value):
+        raise ConfigError(f"'{where}' is {shown(value)}: expected a number {legal}")
+    if not field.low <= value <= field.high:  # NaN is in no range
+        raise ConfigError(f"'{where}' is {shown(value)}{unit}: legal is {legal}")
+    if hint is int and not (isinstance(value, Integral) or float(value).is_integer()):
+        raise ConfigError(f"'{where}' is {shown(value)}: expected a whole number {legal}")
+    try:
+        return hint(value)
+    except OverflowError:
+        raise ConfigError(f"'{where}' is {shown(value)}: legal is {legal}") from None
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)

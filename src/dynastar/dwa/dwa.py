@@ -1,0 +1,212 @@
+"""The dynamic window approach (IV.B, Eqs. 5-9): which speeds to ask for next, and why."""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.dwa import stop_kernels, window_kernels
+from dynastar.dwa.clearance_kernels import footprint_clearance, path_clearance
+from dynastar.dwa.config import DwaConfig
+from dynastar.geometry import Pose2D, Twist
+from dynastar.robot import Robot, slew
+
+Floats = npt.NDArray[np.float64]
+EVADE_AHEAD = 5.0  # s that a way out of movers' way looks ahead
+LEAST_CAP = 0.03  # m, so that dist always tells nearer from farther
+TERMS = ("heading", "dist", "vel", "simi")
+REFUSALS = {
+    stop_kernels.NO_STOP: "no certified stop",
+    stop_kernels.CONTACT: "too fast for the next contact (Eq. 7)",
+    stop_kernels.MOVER: "in the way of a mover",
+}
+
+
+class Surroundings(NamedTuple):
+    """What the window is judged against.
+
+    ``field`` (n, n) metres from each cell's centre to the nearest that is not observed free, its
+    low corner (x0, y0) and resolution; ``movers`` (m, 6) x, y, vx, vy, radius, top speed as of now.
+    """
+
+    field: npt.NDArray[np.float32]
+    x0: float
+    y0: float
+    resolution: float
+    movers: Floats
+
+
+class Wish(NamedTuple):
+    """Where the robot should go: the target, the path from here every ``spacing`` metres, a speed cap."""
+
+    target: tuple[float, float]
+    path: Floats
+    spacing: float
+    v_cap: float
+
+
+class Margins(NamedTuple):
+    """What a footprint is grown by: for what stands (m), for movers (m), and for these per second.
+
+    Where the robot comes to rest, no mover should arrive for ``linger`` seconds.
+    """
+
+    standing: float
+    movers: float
+    spread: float
+    linger: float = 0.0
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What a tick considered: the command, the sample behind it, each term's share, the refusals.
+
+    ``samples`` (n, 2), ``refused`` (n,) codes (0 admissible), ``terms`` (n, 4) raw and ``score``
+    (n,) are views of the window's buffers, valid until the next call.
+    """
+
+    command: Twist | None
+    sample: Twist | None
+    shares: dict[str, float]
+    refusals: dict[str, int]
+    samples: Floats
+    refused: npt.NDArray[np.int64]
+    terms: Floats
+    score: Floats
+
+
+class DynamicWindow:
+    """One robot's dynamic window; its buffers are made once."""
+
+    def __init__(self, robot: Robot, config: DwaConfig, period: float) -> None:
+        self.robot, self.config, self.period = robot, config, period
+        limits = robot.limits
+        slowest = max(limits.v_max / limits.v_accel, limits.omega_max / limits.omega_accel)
+        self.reach = max(period, min(config.reach, slowest))
+        n_v, n_w = config.v_samples, config.omega_samples
+        if config.v_resolution > 0:
+            widest = min((limits.v_accel + limits.v_brake) * self.reach, limits.v_max - limits.v_min)
+            n_v = max(2, math.ceil(widest / config.v_resolution) + 1)
+        if config.omega_resolution > 0:
+            widest = min(
+                (limits.omega_accel + limits.omega_brake) * self.reach, 2 * limits.omega_max
+            )
+            n_w = max(2, math.ceil(widest / config.omega_resolution) + 1)
+        self._counts = n_v, n_w
+        n = (n_v + 1) * (n_w + 1) + 1
+        self._speeds, self._rates = np.empty(n_v + 1), np.empty(n_w + 1)
+        self._samples, self._commands = np.empty((n, 2)), np.empty((n, 2))
+        self._terms, self._score = np.zeros((n, 4)), np.empty(n)
+        self._refused = np.zeros(n, np.int64)
+        self._weights = np.array(config.weights, dtype=np.float64)
+
+    def clearance(self, around: Surroundings, pose: Pose2D, enough: float = 0.5) -> float:
+        """Metres from the footprint to the nearest centre of a cell not observed free (up to ``enough``)."""
+        shape = self.robot.footprint
+        return float(
+            footprint_clearance(
+                around.field, around.x0, around.y0, around.resolution, shape.vertices,
+                shape.inscribed, shape.circumscribed, enough, *pose,
+            )
+        )
+
+    def choose(
+        self, pose: Pose2D, twist: Twist, around: Surroundings, wish: Wish, margins: Margins,
+        ahead: float = 0.0, may_reverse: bool = False, turn_only: bool = False,
+    ) -> Choice:
+        """The best admissible command from ``pose`` and ``twist``, ``ahead`` seconds from now.
+
+        ``command`` is None if no sample is admissible. ``turn_only`` asks for turning in place;
+        without ``may_reverse`` the speed stays >= 0.
+        """
+        config, limits, shape = self.config, self.robot.limits, self.robot.footprint
+        bearing = math.atan2(wish.target[1] - pose.y, wish.target[0] - pose.x) - pose.theta
+        turning = turn_only or abs(math.remainder(bearing, math.tau)) > config.turn_in_place
+        v_min = limits.v_min if may_reverse else 0.0
+        v_cap = 0.0 if turning else min(wish.v_cap, limits.v_max)
+        n = window_kernels.sample_window(
+            *twist, v_min, v_cap, limits.omega_max, limits, self.reach, *self._counts,
+            self._speeds, self._rates, self._samples,
+        )
+        v_scale = limits.v_max
+        if config.normalisation == "window":
+            low, high = self._samples[0, 0], self._samples[n - 2, 0]
+            v_cap, v_scale = min(max(v_cap, low), high), max(high - low, 1e-6)
+        cap = config.clearance_cap
+        if config.clearance_of_path:
+            free = path_clearance(
+                around.field, around.x0, around.y0, around.resolution, wish.path
+            )
+            cap = min(cap, max(free - shape.inscribed - margins.standing, LEAST_CAP))
+        allowed = self.clearance(around, pose, margins.standing + 0.1)
+        best = window_kernels.evaluate(
+            self._samples, n, self._commands, self._terms, self._refused, self._score,
+            *pose, *twist, limits, self.period, self.reach, config.horizon, config.steps,
+            around.field, around.x0, around.y0, around.resolution, shape.vertices, shape.inscribed,
+            shape.circumscribed, margins.standing, allowed, around.movers, margins.spread, margins.linger,
+            margins.movers, ahead, *wish.target, wish.path, wish.spacing, cap,
+            config.path_cap, config.dist == "end", v_cap, v_scale, turning, self._weights,
+            config.normalisation == "sum",
+        )
+        return self._explain(best, n)
+
+    def back_off(
+        self, pose: Pose2D, twist: Twist, around: Surroundings, margins: Margins, ahead: float = 0.0,
+        speed: float = 0.2,
+    ) -> Twist | None:
+        """A step towards driving straight back at up to ``speed`` m/s, if that has a certified stop."""
+        limits, shape = self.robot.limits, self.robot.footprint
+        v = slew(twist.v, max(limits.v_min, -speed), limits.v_accel, limits.v_brake, self.period)
+        omega = slew(twist.omega, 0.0, limits.omega_accel, limits.omega_brake, self.period)
+        code = stop_kernels.certify(
+            around.field, around.x0, around.y0, around.resolution, shape.vertices, shape.inscribed,
+            shape.circumscribed, margins.standing,
+            self.clearance(around, pose, margins.standing + 0.1), around.movers, margins.spread, margins.linger,
+            margins.movers, ahead, *pose, *twist, v, omega, limits, self.period,
+        )
+        return Twist(v, omega) if code == stop_kernels.ADMISSIBLE else None
+
+    def evade(
+        self, pose: Pose2D, twist: Twist, around: Surroundings, margins: Margins, ahead: float = 0.0
+    ) -> Twist | None:
+        """A way out for a robot that movers are about to run into, if there is one better than braking.
+
+        Whatever it is, it could stop for everything that stands. A robot at rest stays unless it
+        gets clear: it should not be touched while it moves.
+        """
+        limits, shape = self.robot.limits, self.robot.footprint
+        n = window_kernels.sample_window(
+            *twist, 0.0, limits.v_max, limits.omega_max, limits, self.reach, *self._counts,
+            self._speeds, self._rates, self._samples,
+        )
+        best, gap, braked = window_kernels.evade(
+            self._samples, n, self._commands, *pose, *twist, limits, self.period, self.reach, 1.0,
+            around.field, around.x0, around.y0, around.resolution, shape.vertices, shape.inscribed,
+            shape.circumscribed, margins.standing,
+            self.clearance(around, pose, margins.standing + 0.1), around.movers, ahead, EVADE_AHEAD,
+        )
+        if best < 0 or braked > margins.movers or gap < braked + 0.05:
+            return None
+        if twist == (0.0, 0.0) and gap < 0.5 * margins.movers:
+            return None
+        return Twist(*self._commands[best].tolist())
+
+    def _explain(self, best: int, n: int) -> Choice:
+        refused = self._refused[:n]
+        counts = np.bincount(refused, minlength=max(REFUSALS) + 1)
+        shares = dict.fromkeys(TERMS, 0.0)
+        command = sample = None
+        if best >= 0:
+            command, sample = Twist(*self._commands[best].tolist()), Twist(*self._samples[best].tolist())
+            terms = self._terms[best]
+            if self.config.normalisation == "sum":
+                total = self._terms[:n][refused == 0].sum(axis=0)
+                terms = np.divide(terms, total, out=np.zeros(4), where=total > 1e-9)
+            shares = dict(zip(TERMS, (self._weights * terms).tolist(), strict=True))
+        return Choice(
+            command, sample, shares,
+            {words: int(counts[code]) for code, words in REFUSALS.items()},
+            self._samples[:n], refused, self._terms[:n], self._score[:n],
+        )

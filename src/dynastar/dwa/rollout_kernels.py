@@ -1,0 +1,100 @@
+"""Trajectories of the samples and the raw terms of Eqs. 8 and 9."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from dynastar.dwa.clearance_kernels import centre_clearance
+from dynastar.dwa.stop_kernels import ADMISSIBLE, CONTACT, MOVER, arc
+
+HEADING, DIST, VEL, SIMI = range(4)
+
+
+@njit(cache=True)
+def roll_out(sample_v, sample_w, x, y, theta, v0, omega0, reach, horizon, steps, field, x0, y0,
+             resolution, radius, margin, allowed, movers, mover_margin, ahead, target_x, target_y, path,
+             spacing, clearance_cap, path_cap, at_end, v_cap, v_scale, turning, b_v, b_w, terms):
+    """Rolls out one sample and writes its four raw terms, each in [0, 1]; returns a refusal code.
+
+    The speeds go to the sample's over ``reach`` seconds and hold from there (Eq. 4, exact arcs).
+    Eq. 7: along that very trajectory the first contact has to lie beyond where a stop from the
+    sample's speeds would end. ``path`` (n, 2) is the global path every ``spacing`` metres from here.
+    """
+    h = horizon / steps
+    stop = max(abs(sample_v) / b_v, abs(sample_w) / b_w)
+    must = reach + 0.5 * stop  # holding the speeds for half the stopping time covers the stop's arc
+    total = max(steps, int(math.ceil(must / h)))
+    target_gap = math.hypot(target_x - x, target_y - y)
+    px, py, ptheta = x, y, theta
+    length = 0.0
+    least = end_clearance = np.inf
+    strayed = 0.0
+    aim_x, aim_y, aim_theta = x, y, theta
+    for k in range(1, total + 1):
+        t = (k - 0.5) * h
+        share = min(1.0, t / reach) if reach > 0.0 else 1.0
+        v = v0 + share * (sample_v - v0)
+        w = omega0 + share * (sample_w - omega0)
+        px, py, ptheta = arc(px, py, ptheta, v * h, w * h)
+        length += abs(v) * h
+        clear = centre_clearance(field, x0, y0, resolution, px, py) - radius
+        if clear < min(margin, allowed) - 1e-6 and k * h <= must:
+            return CONTACT
+        if k > steps:
+            continue
+        clear = max(0.0, clear - margin)
+        for m in range(len(movers)):
+            after = ahead + k * h
+            gap = (
+                math.hypot(movers[m, 0] + movers[m, 2] * after - px,
+                           movers[m, 1] + movers[m, 3] * after - py)
+                - radius - movers[m, 4] - mover_margin
+            )
+            if gap <= 0.0 and k * h <= must + 0.5 * stop and (abs(sample_v) > 0.0 or abs(v0) > 0.0):
+                return MOVER
+            clear = min(clear, max(0.0, gap))
+        least = min(least, clear)
+        end_clearance = clear
+        i = min(int(length / spacing), len(path) - 1)
+        strayed += math.hypot(px - path[i, 0], py - path[i, 1])
+        if length <= 0.5 * target_gap:
+            aim_x, aim_y, aim_theta = px, py, ptheta
+    off = math.atan2(target_y - aim_y, target_x - aim_x) - aim_theta
+    off = abs(math.atan2(math.sin(off), math.cos(off))) if target_gap > 1e-6 else 0.0
+    terms[HEADING] = 1.0 - off / math.pi
+    terms[DIST] = min(end_clearance if at_end else least, clearance_cap) / clearance_cap
+    speed = abs(sample_v) if turning else max(0.0, sample_v)
+    terms[VEL] = max(0.0, 1.0 - abs(speed - v_cap) / v_scale)
+    terms[SIMI] = 1.0 - min(1.0, strayed / steps / path_cap)
+    return ADMISSIBLE
+
+
+@njit(cache=True)
+def normalise_and_choose(terms, refused, weights, by_sum, score):
+    """Eq. 9 over the admissible samples: G into ``score`` (n,), the best index or -1.
+
+    ``by_sum`` divides each term by its sum over the admissible samples, else the terms stay as they
+    are, each over its fixed range. Refused samples score -inf.
+    """
+    n = len(refused)
+    scale = np.ones(4)
+    if by_sum:
+        for j in range(4):
+            total = 0.0
+            for i in range(n):
+                if refused[i] == ADMISSIBLE:
+                    total += terms[i, j]
+            scale[j] = 1.0 / total if total > 1e-9 else 0.0
+    best = -1
+    for i in range(n):
+        if refused[i] != ADMISSIBLE:
+            score[i] = -np.inf
+            continue
+        g = 0.0
+        for j in range(4):
+            g += weights[j] * terms[i, j] * scale[j]
+        score[i] = g
+        if best < 0 or g > score[best]:
+            best = i
+    return best

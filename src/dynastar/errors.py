@@ -1,0 +1,49 @@
+"""Everything dynastar raises on purpose, in one tree; each message says what, where and what would do."""
+
+
+class DynastarError(Exception):
+    """Root of the tree: catching it catches every error that dynastar raises on purpose."""
+
+
+class InputError(DynastarError):
+    """Something handed to dynastar is not what it has to be."""
+
+
+class ConfigError(InputError):
+    """A setting has a wrong name, type or value."""
+
+
+class MapError(InputError):
+    """A map file is missing, malformed, truncated or too large."""
+
+
+class ScenarioError(InputError):
+    """A scenario is missing, malformed or contradicts itself."""
+
+
+class EpisodeError(InputError):
+    """An episode file is missing, malformed or of another version."""
+
+
+class DataError(InputError):
+    """A benchmark's data set is not where it should be, or not what it should be."""
+
+
+class PlanningError(DynastarError):
+    """A plan cannot be made."""
+
+
+class OutOfMap(PlanningError, InputError):  # noqa: N818 - the name says it
+    """A point lies outside the map."""
+
+
+class StartOccupied(PlanningError, InputError):  # noqa: N818
+    """The robot stands in an obstacle and no free cell is near enough to leave it."""
+
+
+class GoalOccupied(PlanningError, InputError):  # noqa: N818
+    """The footprint does not fit at the goal."""
+
+
+class NoPath(PlanningError):  # noqa: N818
+    """Start and goal are free, and nothing connects them."""

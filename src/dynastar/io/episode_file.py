@@ -1,0 +1,210 @@
+"""Episodes as one compressed file: NumPy arrays and a JSON header in a zip (what ``.npz`` is).
+
+``header`` is UTF-8 JSON with the format's version and all that is no array; every other member is
+an array of ``Episode`` by name, lists of them flattened with the rows of each counted.
+"""
+
+import io
+import json
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.config import shown
+from dynastar.episode import Episode, EventRecord, PlanRecord
+from dynastar.errors import EpisodeError, MapError
+from dynastar.grid import GridFrame, OccupancyGrid
+from dynastar.io.files import read_bytes, written_aside
+from dynastar.path import Trajectory
+
+VERSION = 1
+MAX_EPISODE_BYTES = 2**31  # unpacked
+
+Arrays = dict[str, npt.NDArray[Any]]
+
+# Shape of every array: n ticks, m movers, k corners, -1 for any number.
+_SHAPES: dict[str, tuple[Any, ...]] = {
+    "values": (-1, -1),
+    "footprint": (-1, 2),
+    "goals": (-1, -1),
+    "times": ("n",),
+    "poses": ("n", 3),
+    "twists": ("n", 2),
+    "commands": ("n", 2),
+    "clearance": ("n",),
+    "command_ms": ("n",),
+    "states": ("n",),
+    "movers": ("n", "m", 2),
+    "mover_radii": ("m",),
+    "obstacle_points": (-1, 2),
+    "obstacle_rows": (-1,),
+    "plan_points": (-1, 2),
+    "plan_rows": (-1,),
+    "explored": (-1, 2),
+    "explored_rows": (-1,),
+}
+_MASKS = ("keepout", "speed_limit")
+
+
+def save_episode(episode: Episode, path: str | Path) -> None:
+    """Writes an episode; by custom the suffix is ``.npz``. Raises EpisodeError if it cannot."""
+    path = Path(path)
+    header = {
+        "format": "dynastar episode",
+        "version": VERSION,
+        "frame": list(episode.grid.frame),
+        "robot": episode.robot,
+        "radius": episode.radius,
+        "goal_tolerance": episode.goal_tolerance,
+        "plans": [[plan.stamp, plan.reason] for plan in episode.plans],
+        "events": [list(event) for event in episode.events],
+        "outcome": episode.outcome,
+        "reason": episode.reason,
+        "contact": episode.contact,
+        "explored_frame": list(episode.explored_frame),
+        "config": episode.config,
+        "scenario": episode.scenario,
+    }
+    try:
+        # NaN and infinity stay what they are: this JSON is read by load_episode alone.
+        packed = json.dumps(header, default=_plain).encode("utf-8")
+    except (TypeError, ValueError) as error:
+        raise EpisodeError(f"{path}: the episode cannot be written: {error}") from None
+    arrays = _arrays(episode) | {"header": np.frombuffer(packed, dtype=np.uint8)}
+    with written_aside(path, EpisodeError) as aside, aside.open("wb") as stream:
+        np.savez_compressed(stream, allow_pickle=False, **arrays)
+
+
+def load_episode(path: str | Path) -> Episode:
+    """The episode in a file; EpisodeError if it is damaged, none, or of another version."""
+    path = Path(path)
+    data = read_bytes(path, MAX_EPISODE_BYTES, EpisodeError)
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            if sum(member.file_size for member in archive.infolist()) > MAX_EPISODE_BYTES:
+                raise EpisodeError(f"unpacked, it has more than {MAX_EPISODE_BYTES} bytes")
+        with np.load(io.BytesIO(data), allow_pickle=False) as members:
+            arrays = {name: members[name] for name in members.files}
+        header = _header(arrays)
+        _check(arrays)
+        return _episode(header, arrays)
+    except (EpisodeError, MapError) as error:
+        raise EpisodeError(f"{path}: {error}") from None
+    except KeyError as error:
+        raise EpisodeError(f"{path}: the episode lacks {error}") from None
+    except Exception as error:  # zipfile, zlib and numpy raise many kinds for damage
+        raise EpisodeError(f"{path}: the file is damaged or no episode ({error!s:.100})") from None
+
+
+def _arrays(episode: Episode) -> Arrays:
+    arrays: Arrays = {
+        "values": episode.grid.values,
+        "footprint": episode.footprint,
+        "goals": episode.goals,
+        "times": episode.trajectory.times,
+        "poses": episode.trajectory.poses,
+        "twists": episode.trajectory.twists,
+        "commands": episode.commands,
+        "clearance": episode.clearance,
+        "command_ms": episode.command_ms,
+        "states": np.asarray(episode.states, dtype=np.str_),
+        "movers": episode.movers,
+        "mover_radii": episode.mover_radii,
+    }
+    for mask in _MASKS:
+        if getattr(episode.grid, mask) is not None:
+            arrays[mask] = getattr(episode.grid, mask)
+    plans = episode.plans
+    for points, rows, parts, dtype in (
+        ("obstacle_points", "obstacle_rows", episode.obstacles, np.float64),
+        ("plan_points", "plan_rows", tuple(plan.points for plan in plans), np.float64),
+        ("explored", "explored_rows", tuple(plan.explored for plan in plans), np.int32),
+    ):
+        arrays[points] = np.concatenate([np.empty((0, 2), dtype), *parts], dtype=dtype)
+        arrays[rows] = np.array([len(part) for part in parts], dtype=np.int64)
+    return arrays
+
+
+def _header(arrays: Arrays) -> dict[str, Any]:
+    header = json.loads(arrays.pop("header").tobytes().decode("utf-8"))
+    if not isinstance(header, dict) or header.get("format") != "dynastar episode":
+        raise EpisodeError("this is not an episode of dynastar")
+    if header.get("version") != VERSION:
+        raise EpisodeError(
+            f"the episode has version {shown(header.get('version'))}, this dynastar reads {VERSION}"
+        )
+    return header
+
+
+def _check(arrays: Arrays) -> None:
+    """Raises EpisodeError unless every array has its shape, and KeyError if one is missing."""
+    sizes: dict[str, int] = {}
+    for name, shape in _SHAPES.items():
+        found = arrays[name].shape
+        fits = len(found) == len(shape)
+        for wanted, size in zip(shape, found, strict=False):
+            if isinstance(wanted, str):
+                wanted = sizes.setdefault(wanted, size)
+            fits &= wanted in (-1, size)
+        if not fits:
+            raise EpisodeError(f"'{name}' has shape {found}: expected {shape} with {sizes}")
+        text = arrays[name].dtype.kind == "U"
+        if text != (name == "states") or arrays[name].dtype.kind not in "Uifb":
+            raise EpisodeError(f"'{name}' is of {arrays[name].dtype}: expected numbers or names")
+
+
+def _episode(header: dict[str, Any], arrays: Arrays) -> Episode:
+    for array in arrays.values():
+        array.flags.writeable = False
+    grid = OccupancyGrid(
+        arrays["values"],
+        GridFrame(*map(float, header["frame"])),
+        *(arrays.get(mask) for mask in _MASKS),
+    )
+    points = _split(arrays, "plan_points", "plan_rows")
+    explored = _split(arrays, "explored", "explored_rows")
+    plans = zip(header["plans"], points, explored, strict=True)
+    resolution, x, y, yaw = map(float, header["explored_frame"])
+    return Episode(
+        grid=grid,
+        robot=str(header["robot"]),
+        radius=float(header["radius"]),
+        footprint=arrays["footprint"],
+        goals=arrays["goals"],
+        goal_tolerance=float(header["goal_tolerance"]),
+        trajectory=Trajectory(arrays["times"], arrays["poses"], arrays["twists"]),
+        commands=arrays["commands"],
+        clearance=arrays["clearance"],
+        command_ms=arrays["command_ms"],
+        states=arrays["states"],
+        movers=arrays["movers"],
+        mover_radii=arrays["mover_radii"],
+        obstacles=_split(arrays, "obstacle_points", "obstacle_rows"),
+        plans=tuple(PlanRecord(float(t), str(why), p, cells) for (t, why), p, cells in plans),
+        events=tuple(EventRecord(float(t), str(kind), str(d)) for t, kind, d in header["events"]),
+        outcome=str(header["outcome"]),
+        reason=str(header["reason"]),
+        contact=str(header["contact"]),
+        explored_frame=(resolution, x, y, yaw),
+        config=dict(header["config"]),
+        scenario=dict(header["scenario"]),
+    )
+
+
+def _split(arrays: Arrays, points: str, rows: str) -> tuple[npt.NDArray[Any], ...]:
+    counts = arrays[rows].astype(np.int64)
+    if (counts < 0).any() or counts.sum() != len(arrays[points]):
+        raise EpisodeError(f"'{rows}' does not add up to the rows of '{points}'")
+    if len(counts) == 0:
+        return ()
+    return tuple(np.split(arrays[points], np.cumsum(counts)[:-1]))
+
+
+def _plain(value: Any) -> Any:
+    """What JSON does not know by itself: NumPy's numbers and arrays."""
+    if isinstance(value, np.generic | np.ndarray):
+        return value.tolist()
+    raise TypeError(f"a header cannot hold a {type(value).__name__}")

@@ -1,0 +1,142 @@
+"""Maps by file name: what the suffix says decides how a file is read and written."""
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.errors import MapError
+from dynastar.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
+from dynastar.io.files import MAX_BYTES, MAX_TEXT_BYTES, check_size, read_bytes, written_aside
+from dynastar.io.movingai import check_plain, load_movingai_map, save_movingai_map
+from dynastar.io.ros_map import load_ros_map, read_header, save_ros_map
+
+T = TypeVar("T")
+
+
+def load_map(path: str | Path) -> OccupancyGrid:
+    """The map in a file: ROS (``.yaml``), MovingAI (``.map``), NumPy (``.npy``), drawn (``.txt``).
+
+    An image (``.pgm``, ``.png``) is read by way of the YAML file of the same name beside it. An
+    array is bool or int8, [rows, columns], row 0 at the lowest y. Arrays, ``.map`` and ``.txt``
+    have cells of 1 m and their corner at (0, 0). Raises MapError.
+    """
+    path = Path(path)
+    return _choose(_LOADERS, path)(path)
+
+
+def save_map(grid: OccupancyGrid, path: str | Path) -> None:
+    """Writes ``grid`` in the form that the suffix of ``path`` says, so that it loads back the same.
+
+    An image's name writes the YAML file beside it, too. Raises MapError where the form cannot hold
+    the grid, or the file cannot be written.
+    """
+    path = Path(path)
+    _choose(_SAVERS, path)(grid, path)
+
+
+def _load_image(path: Path) -> OccupancyGrid:
+    for suffix in (".yaml", ".yml"):
+        table = path.with_suffix(suffix)
+        if table.is_file():
+            named = table.parent / read_header(table).image
+            if named.resolve() != path.resolve():
+                raise MapError(f"{path}: {table.name} beside it is for another image, {named.name}")
+            return load_ros_map(table)
+    raise MapError(
+        f"{path}: an image alone has no resolution, expected {path.stem}.yaml beside it (ROS map)"
+    )
+
+
+def _load_array(path: Path) -> OccupancyGrid:
+    data = read_bytes(path, MAX_BYTES, MapError)
+    try:
+        stream = io.BytesIO(data)
+        version = np.lib.format.read_magic(stream)
+        read = {(1, 0): np.lib.format.read_array_header_1_0}.get(
+            version, np.lib.format.read_array_header_2_0
+        )
+        shape, _, dtype = read(stream)
+    except Exception as error:  # numpy's reader raises many kinds for damage
+        raise MapError(f"{path}: this is no NumPy array ({error!s:.80})") from None
+    if dtype not in (np.bool_, np.int8):
+        raise MapError(
+            f"{path}: the array is of {dtype}, expected bool (occupied) or int8 (-1..100)"
+        )
+    if len(shape) != 2:
+        raise MapError(f"{path}: the array has shape {shape!s:.60}, expected (rows, columns)")
+    check_size(*shape, path)
+    if len(data) - stream.tell() != shape[0] * shape[1]:
+        raise MapError(
+            f"{path}: {len(data) - stream.tell()} bytes follow the header, "
+            f"expected {shape[0]} x {shape[1]}"
+        )
+    try:
+        values = np.load(io.BytesIO(data), allow_pickle=False)
+        if dtype == np.bool_:  # a byte of 2 would be a bool that is neither
+            values = values.view(np.uint8) != 0
+        return OccupancyGrid(values)
+    except (MapError, ValueError) as error:
+        raise MapError(f"{path}: {error}") from None
+
+
+def _save_array(grid: OccupancyGrid, path: Path) -> None:
+    check_plain(grid, path)
+    with written_aside(path, MapError) as aside, aside.open("wb") as stream:
+        np.save(stream, grid.values, allow_pickle=False)
+
+
+def _load_text(path: Path) -> OccupancyGrid:
+    try:
+        text = read_bytes(path, MAX_TEXT_BYTES, MapError).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise MapError(f"{path}: this is not a text file") from None
+    lines = text.replace("\r\n", "\n").strip("\n").split("\n")
+    check_size(len(lines), max(map(len, lines)), path)
+    try:
+        return OccupancyGrid.from_text(lines)
+    except MapError as error:
+        raise MapError(f"{path}: {error}") from None
+
+
+def _save_text(grid: OccupancyGrid, path: Path) -> None:
+    check_plain(grid, path)
+    if not np.isin(grid.values, (FREE, OCCUPIED, UNKNOWN)).all():
+        raise MapError(f"{path}: a drawn map holds free, occupied, unknown only, save as .yaml")
+    marks: npt.NDArray[np.uint8] = np.zeros(256, dtype=np.uint8)
+    marks[[FREE, OCCUPIED, UNKNOWN]] = list(b".#?")
+    lines = [marks[row.view(np.uint8)].tobytes() for row in grid.values[::-1]]
+    with written_aside(path, MapError) as aside:
+        aside.write_bytes(b"\n".join(lines) + b"\n")
+
+
+_LOADERS: dict[str, Callable[[Path], OccupancyGrid]] = {
+    ".yaml": load_ros_map,
+    ".yml": load_ros_map,
+    ".pgm": _load_image,
+    ".png": _load_image,
+    ".map": load_movingai_map,
+    ".npy": _load_array,
+    ".txt": _load_text,
+}
+_SAVERS: dict[str, Callable[[OccupancyGrid, Path], None]] = {
+    ".yaml": save_ros_map,
+    ".yml": save_ros_map,
+    ".pgm": lambda grid, path: save_ros_map(grid, path.with_suffix(".yaml"), "pgm"),
+    ".png": lambda grid, path: save_ros_map(grid, path.with_suffix(".yaml"), "png"),
+    ".map": save_movingai_map,
+    ".npy": _save_array,
+    ".txt": _save_text,
+}
+
+
+def _choose(table: dict[str, T], path: Path) -> T:
+    suffix = path.suffix.lower()
+    if suffix not in table:
+        raise MapError(
+            f"{path}: '{path.suffix}' is no suffix of a map, expected {', '.join(table)}"
+        )
+    return table[suffix]

@@ -1,0 +1,269 @@
+"""Scenario files: TOML, checked key by key, so that a typo names the key and the nearest right one.
+
+``ScenarioTable`` has the top-level keys; ``[sensor]`` holds those of ``Lidar`` and of ``Noise``.
+"""
+
+import math
+import os
+import re
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal, NamedTuple
+
+from dynastar import simulation
+from dynastar.config import Field, checked, choose, nearest, shown
+from dynastar.episode import Episode
+from dynastar.errors import ConfigError, InputError, MapError, OutOfMap, ScenarioError
+from dynastar.geometry import Goal
+from dynastar.grid import OccupancyGrid, Unknown
+from dynastar.io.files import MAX_TABLE_BYTES, read_bytes
+from dynastar.io.maps import load_map
+from dynastar.io.scenario_things import Metres, contains, read_mover, read_obstacle
+from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot
+from dynastar.simulation.scenario import Noise, Scenario
+
+DATA_VARIABLE = "DYNASTAR_DATA"
+
+
+class ScenarioTable(NamedTuple):
+    """The keys of a scenario file; it needs ``map``, ``robot``, ``start``, and a goal."""
+
+    map: Any
+    robot: Any
+    start: Any
+    goals: Any = None
+    goal: Any = None
+    name: str = ""
+    world: Any = None
+    seed: Annotated[int, Field("of all noise", "", 0, 2**63 - 1)] = 0
+    time_limit: Annotated[float, Field("when to give up", "s", 0.1, 1e5)] = 300.0
+    latency: Annotated[float, Field("a command acts so much later", "s", 0.0, 1.0)] = 0.0
+    unknown: Annotated[Unknown, Field("whether to plan through unknown space")] = "blocked"
+    goal_tolerance: Annotated[float, Field("so near is there", "m", 0.01, 5.0)] = 0.25
+    heading_tolerance: Annotated[float, Field("so well aligned is aligned", "rad", 0.01, 3.2)] = 0.1
+    preset: Annotated[Literal["default", "paper"], Field("the navigator's settings")] = "default"
+    sensor: Any = None
+    obstacles: Any = None
+    movers: Any = None
+    navigator: Any = None
+
+
+class MapTable(NamedTuple):
+    """A map drawn in the scenario itself: see ``OccupancyGrid.from_text``."""
+
+    rows: tuple[str, ...]
+    resolution: Annotated[float, Field("side of a cell", "m", 1e-3, 1e3)] = 1.0
+    origin: Annotated[tuple[float, float], Field("lowest corner", "m", -1e6, 1e6)] = (0.0, 0.0)
+
+
+class RobotTable(NamedTuple):
+    """A ready-made robot with changes; a footprint is a radius or a convex polygon round (0, 0)."""
+
+    base: str
+    limits: Any = None
+    radius: Annotated[float | None, Field("of a disc", "m", 0.01, 10.0)] = None
+    polygon: Annotated[
+        tuple[tuple[float, float], ...] | None, Field("corners", "m", -10.0, 10.0)
+    ] = None
+
+
+class PlaceTable(NamedTuple):
+    """Where to start or to go."""
+
+    x: Metres
+    y: Metres
+    heading: Annotated[float | None, Field("free if left out", "rad", -7.0, 7.0)] = None
+
+
+def load_scenario(path: str | Path) -> Scenario:
+    """The scenario in a TOML file.
+
+    A map's name is relative to the file, and may start with ``${DYNASTAR_DATA}``. Raises
+    ScenarioError, led by the file's name, for whatever is missing, misspelt or contradictory.
+    """
+    path = Path(path)
+    data = read_bytes(path, MAX_TABLE_BYTES, ScenarioError)
+    try:
+        source = tomllib.loads(data.decode("utf-8"))
+    except UnicodeDecodeError:
+        raise ScenarioError(f"{path}: this is not a text file") from None
+    except RecursionError:
+        raise ScenarioError(f"{path}: this TOML is nested too deep") from None
+    except ValueError as error:
+        raise ScenarioError(f"{path}: this is not valid TOML: {error!s:.120}") from None
+    try:
+        return read_scenario(source, path.parent, path.stem)
+    except InputError as error:
+        raise ScenarioError(f"{path}: {error}") from None
+
+
+def read_scenario(source: Mapping[str, Any], folder: Path, name: str) -> Scenario:
+    """The scenario in a parsed TOML file of ``folder``, by default called ``name``; InputError."""
+    table = checked(ScenarioTable, source)
+    robot, noise = _sensor(table.sensor, _robot(table.robot))
+    start = _place(table.start, "start")
+    scenario = Scenario(
+        name=table.name or name,
+        grid=_map(table.map, folder, "map"),
+        world=None if table.world is None else _map(table.world, folder, "world"),
+        robot=robot,
+        noise=noise,
+        start=(start.x, start.y, start.heading),
+        goals=_goals(table),
+        obstacles=tuple(
+            read_obstacle(row, where) for where, row in _rows(table.obstacles, "obstacles")
+        ),
+        movers=tuple(
+            read_mover(row, where, table.time_limit) for where, row in _rows(table.movers, "movers")
+        ),
+        latency=table.latency,
+        goal_tolerance=table.goal_tolerance,
+        heading_tolerance=table.heading_tolerance,
+        time_limit=table.time_limit,
+        unknown=table.unknown,
+        seed=table.seed,
+        preset=table.preset,
+        navigator=_table(table.navigator, "navigator"),
+        source=source,
+    )
+    _check_navigator(scenario)
+    _check_places(scenario)
+    return scenario
+
+
+def run(
+    scenario: Scenario | str | Path, progress: bool = False, seed: int | None = None
+) -> Episode:
+    """Drives a scenario, or the one in a file, in simulation: see ``simulation.run``."""
+    if not isinstance(scenario, Scenario):
+        scenario = load_scenario(scenario)
+    return simulation.run(scenario, progress=progress, seed=seed)
+
+
+def _table(value: Any, where: str) -> dict[str, Any]:
+    if value is None:
+        return {}
+    if not isinstance(value, Mapping):
+        raise ConfigError(f"'{where}' is {shown(value)}: expected a table")
+    return dict(value)
+
+
+def _rows(value: Any, where: str) -> list[tuple[str, Any]]:
+    if value is None:
+        return []
+    if not isinstance(value, list):
+        raise ConfigError(f"'{where}' is {shown(value)}: expected tables headed [[{where}]]")
+    return [(f"{where}[{number}]", row) for number, row in enumerate(value)]
+
+
+def _map(value: Any, folder: Path, where: str) -> OccupancyGrid:
+    if isinstance(value, str):
+        return load_map(folder / _expanded(value, where))
+    if not isinstance(value, Mapping):
+        raise ConfigError(f"'{where}' is {shown(value)}: expected a file's name or a table")
+    table = checked(MapTable, value, where)
+    try:
+        return OccupancyGrid.from_text(table.rows, table.resolution, *table.origin)
+    except MapError as error:
+        raise MapError(f"'{where}.rows': {error}") from None
+
+
+def _expanded(name: str, where: str) -> str:
+    for variable in re.findall(r"\$\{([^}]*)\}", name):
+        if variable != DATA_VARIABLE:
+            raise ConfigError(f"'{where}' has ${{{variable}}}: only ${{{DATA_VARIABLE}}} is known")
+        if not os.environ.get(variable):
+            raise ConfigError(
+                f"'{where}' is {name!r}, and {variable} is not set in the environment"
+            )
+        name = name.replace(f"${{{variable}}}", os.environ[variable])
+    return name
+
+
+def _robot(value: Any) -> Robot:
+    if isinstance(value, str):
+        return choose(value, ROBOTS, "robot")
+    table = checked(RobotTable, value, "robot")
+    robot = choose(table.base, ROBOTS, "robot")
+    limits = _overridden(Limits, robot.limits, _table(table.limits, "robot.limits"), "robot.limits")
+    footprint = robot.footprint
+    if table.radius is not None and table.polygon is not None:
+        raise ConfigError("'robot' has a radius and a polygon: expected one of them")
+    if table.radius is not None:
+        footprint = Footprint.disc(table.radius)
+    if table.polygon is not None:
+        footprint = Footprint.polygon(table.polygon)
+    return Robot(robot.name, limits, footprint, robot.lidar)
+
+
+def _sensor(value: Any, robot: Robot) -> tuple[Robot, Noise]:
+    table = _table(value, "sensor")
+    legal = Lidar._fields + Noise._fields
+    for key in table:
+        if key not in legal:
+            raise ConfigError(f"unknown key 'sensor.{key}'{nearest(key, legal)}")
+    noise = {key: table.pop(key) for key in Noise._fields if key in table}
+    lidar = _overridden(Lidar, robot.lidar, table, "sensor")
+    if lidar.range_min >= lidar.range_max:
+        raise ConfigError(
+            f"'sensor.range_min' is {lidar.range_min:g} m: expected less than "
+            f"range_max, {lidar.range_max:g} m"
+        )
+    return Robot(robot.name, robot.limits, robot.footprint, lidar), checked(Noise, noise, "sensor")
+
+
+def _overridden(cls: Any, base: Any, overrides: Mapping[str, Any], where: str) -> Any:
+    return checked(cls, {**base._asdict(), **overrides}, where)
+
+
+def _place(value: Any, where: str) -> PlaceTable:
+    if isinstance(value, list):
+        if len(value) not in (2, 3):
+            raise ConfigError(f"'{where}' is {shown(value)}: expected [x, y] or [x, y, heading]")
+        value = dict(zip(PlaceTable._fields, value, strict=False))
+    return checked(PlaceTable, value, where)
+
+
+def _goals(table: ScenarioTable) -> tuple[Goal, ...]:
+    if table.goal is not None and table.goals is not None:
+        raise ConfigError("there is 'goal' and there is 'goals': expected one of them")
+    rows = [("goal", table.goal)] if table.goal is not None else _rows(table.goals, "goals")
+    if not rows:
+        raise ConfigError("there is no goal: expected goal = [x, y] or tables headed [[goals]]")
+    return tuple(Goal(*_place(row, where)) for where, row in rows)
+
+
+def _check_navigator(scenario: Scenario) -> None:
+    from dynastar.navigator.config import configured
+
+    try:
+        configured(scenario.preset, scenario.navigator)
+    except ConfigError as error:
+        raise ConfigError(f"in [navigator]: {error}") from None
+
+
+def _check_places(scenario: Scenario) -> None:
+    places = [("the start", scenario.start[0], scenario.start[1])]
+    places += [(f"goal {n}", goal.x, goal.y) for n, goal in enumerate(scenario.goals, 1)]
+    for what, x, y in places:
+        try:
+            cell = scenario.grid.world_to_cell(x, y)
+        except OutOfMap as error:
+            raise OutOfMap(f"{what} {error}") from None
+        if scenario.grid.occupied[cell]:
+            raise ScenarioError(f"{what} ({x:g}, {y:g}) is in an occupied cell of the map")
+    _, x, y = places[0]
+    world = scenario.world
+    if world is not None and not (world.contains(x, y) and _is_free(world, x, y)):
+        raise ScenarioError(f"the start ({x:g}, {y:g}) is off the true map or occupied there")
+    for number, polygon in enumerate(scenario.obstacles):
+        if contains(polygon, x, y):
+            raise ScenarioError(f"the start ({x:g}, {y:g}) is inside obstacles[{number}]")
+    for number, mover in enumerate(scenario.movers):
+        if mover.times[0] <= 0.0 and math.dist(mover.points[0], (x, y)) <= mover.radius:
+            raise ScenarioError(f"the start ({x:g}, {y:g}) is inside movers[{number}]")
+
+
+def _is_free(world: OccupancyGrid, x: float, y: float) -> bool:
+    return not world.occupied[world.world_to_cell(x, y)]

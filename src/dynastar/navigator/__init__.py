@@ -1,0 +1,15 @@
+"""The hybrid navigator of section V, and what goes in and comes out of it."""
+
+from dynastar.navigator.config import PRESETS, NavigatorConfig, configured
+from dynastar.navigator.navigator import Navigator
+from dynastar.navigator.status import STATES, RobotState, Status
+
+__all__ = [
+    "PRESETS",
+    "STATES",
+    "Navigator",
+    "NavigatorConfig",
+    "RobotState",
+    "Status",
+    "configured",
+]

@@ -1,0 +1,72 @@
+"""The navigator's settings, and the presets."""
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, NamedTuple
+
+from dynastar.config import Field, checked, choose
+from dynastar.dwa import DwaConfig, Weights
+from dynastar.obstacles import LayerConfig, TrackerConfig
+from dynastar.planning import PlannerConfig
+
+
+class NavigatorConfig(NamedTuple):
+    """Everything a navigator can be told; the declared bounds are what its promise rests on."""
+
+    period: Annotated[float, Field("time between two commands", "s", 0.01, 1.0)] = 0.1
+    latency: Annotated[float, Field("a command acts so much later", "s", 0.0, 1.0)] = 0.0
+    range_error: Annotated[float, Field("bound of a range's error", "m", 0.0, 1.0)] = 0.01
+    pose_error: Annotated[float, Field("bound of the position's error", "m", 0.0, 1.0)] = 0.01
+    heading_error: Annotated[float, Field("bound of the heading's error", "rad", 0.0, 0.5)] = 0.0
+    mover_error: Annotated[float, Field("a mover's velocity may be off by", "m/s", 0.0, 2.0)] = 0.1
+    mover_margin: Annotated[float, Field("gap kept from a mover", "m", 0.0, 2.0)] = 0.15
+    linger: Annotated[
+        float, Field("no mover should arrive where it rests for so long", "s", 0.0, 60.0)
+    ] = 4.0
+    mover_speed: Annotated[
+        float, Field("so fast a mover may come into view head-on", "m/s", 0.0, 20.0)
+    ] = 0.8
+    scan_age: Annotated[float, Field("older data are no data", "s", 0.05, 5.0)] = 0.3
+    unknown: Annotated[Literal["free", "blocked"], Field("plan through unknown space?")] = "blocked"
+    goal_tolerance: Annotated[float, Field("so near is there", "m", 0.01, 5.0)] = 0.25
+    heading_tolerance: Annotated[float, Field("so well aligned is aligned", "rad", 0.01, 3.2)] = 0.1
+    lookahead: Annotated[float, Field("the target lies so far along the path", "m", 0.2, 50.0)] = 1.5
+    planning_resolution: Annotated[float, Field("plan on cells no larger", "m", 0.01, 10.0)] = 0.1
+    comfort: Annotated[float, Field("clearance a plan has to spare if it can", "m", 0.0, 5.0)] = 0.1
+    deviation: Annotated[float, Field("replan when so far off the path", "m", 0.1, 50.0)] = 1.0
+    stuck_time: Annotated[float, Field("no progress for so long is stuck", "s", 0.5, 120.0)] = 6.0
+    patience: Annotated[float, Field("wait for a mover so long", "s", 0.0, 600.0)] = 15.0
+    attempts: Annotated[int, Field("rounds of recovery before giving up", "", 1, 100)] = 4
+    planner: PlannerConfig = PlannerConfig()
+    dwa: DwaConfig = DwaConfig()
+    layer: LayerConfig = LayerConfig()
+    tracker: TrackerConfig = TrackerConfig()
+
+
+PRESETS: dict[str, NavigatorConfig] = {
+    "default": NavigatorConfig(),
+    # The printed weights and resolutions; a sample is reached within one period (Eq. 6).
+    "paper": NavigatorConfig(
+        dwa=DwaConfig(
+            weights=Weights(0.5, 0.2, 0.2, 0.1),
+            reach=0.0,
+            v_resolution=0.01,
+            omega_resolution=0.017453292519943295,
+            normalisation="sum",
+            clearance_of_path=False,
+        )
+    ),
+}
+
+
+def configured(preset: str = "default", overrides: Mapping[str, Any] | None = None) -> NavigatorConfig:
+    """A preset with ``overrides``, nested tables by field name; ConfigError names what is wrong."""
+    return _merged(choose(preset, PRESETS, "preset"), overrides or {}, "")
+
+
+def _merged(base: Any, overrides: Mapping[str, Any], where: str) -> Any:
+    values = dict(base._asdict())
+    for key, value in overrides.items():
+        current = values.get(key)
+        nested = hasattr(current, "_asdict") and isinstance(value, Mapping)
+        values[key] = _merged(current, value, f"{where}{key}.") if nested else value
+    return checked(type(base), values, where.rstrip("."))

@@ -1,0 +1,351 @@
+"""The hybrid navigator (section V): plan, follow, avoid, replan, recover, arrive or say why not."""
+
+import logging
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from dynastar.dwa import Choice, DynamicWindow, Margins, Surroundings, Wish
+from dynastar.dwa.stop_kernels import coast
+from dynastar.errors import GoalOccupied, NoPath, PlanningError
+from dynastar.geometry import Goal, Pose2D, Twist, wrap_angle
+from dynastar.grid import OccupancyGrid
+from dynastar.navigator.braking import StopProfile
+from dynastar.navigator.chart import Chart
+from dynastar.navigator.config import NavigatorConfig
+from dynastar.navigator.profile import SpeedProfile, bend_speed, points, wary_speed
+from dynastar.navigator.progress import Progress
+from dynastar.navigator.recovery import Recovery
+from dynastar.navigator.senses import Senses
+from dynastar.navigator.status import RobotState, Status
+from dynastar.navigator.target import local_target
+from dynastar.obstacles import MovingObstacle
+from dynastar.path import Path
+from dynastar.robot import Robot
+from dynastar.scan import LaserScan
+
+log = logging.getLogger("dynastar")
+
+REST = Twist(0.0, 0.0)
+OUT_OF_SIGHT = "the path is out of sight"
+PATH_SPACING = 0.1  # m between the points of the path that simi compares with
+
+
+class Navigator:
+    """Takes a robot to its goals: give it every state and scan, and drive as it says.
+
+    Single-threaded, without a clock of its own; ``command`` never raises while driving: trouble is
+    a braking twist and a ``status``.
+    """
+
+    def __init__(
+        self, grid: OccupancyGrid, robot: Robot, config: NavigatorConfig = NavigatorConfig()
+    ) -> None:
+        self.robot, self.config = robot, config
+        half_diagonal = config.layer.resolution / math.sqrt(2.0)
+        self.margins = Margins(
+            half_diagonal + 2.0 * config.pose_error,
+            config.mover_margin + config.pose_error,
+            config.mover_error,
+            config.linger,
+        )
+        self._v_wary = wary_speed(robot, config.mover_speed)
+        self.window = DynamicWindow(robot, config.dwa, config.period)
+        self.senses = Senses(robot, config)
+        self.progress, self.recovery = Progress(), Recovery(config)
+        self.status = Status()
+        self._goals: list[Goal] = []
+        self._path: Path | None = None
+        self._s = 0.0
+        self._sent: list[tuple[float, Twist]] = []
+        self._stop = StopProfile(REST, robot.limits)
+        self._waiting_since: float | None = None
+        self.set_map(grid)
+
+    def set_map(self, grid: OccupancyGrid) -> None:
+        """Another map; what was seen is kept round the robot, the next tick plans anew."""
+        shape = self.robot.footprint
+        # What a certified stop needs, and what the field between its cells may fall short by.
+        margin = self.margins.standing + 0.5 * self.config.layer.resolution
+        self.chart = Chart(
+            grid, self.config, shape.circumscribed + margin, shape.inscribed + margin
+        )
+        self.senses.set_grid(grid)
+        self._path = None
+        self.status = replace(self.status, planning_frame=self.chart.frame)
+
+    def set_goal(self, goal: Goal | Sequence[Goal]) -> None:
+        """One goal, or several to reach in order: (x, y) metres and a heading in radians or None."""
+        goals = [goal] if isinstance(goal, Goal) else [Goal(*g) for g in goal]
+        for x, y, heading in goals:
+            if not all(map(math.isfinite, (x, y, heading or 0.0))):
+                raise ValueError(f"a goal is ({x}, {y}, {heading}): expected finite numbers")
+        self._goals = goals
+        self._path = None
+        self.recovery.reset()
+        self._say("following" if goals else "idle", "new goal" if goals else "no goal", error=None)
+
+    def command(
+        self,
+        state: RobotState,
+        scan: LaserScan | Sequence[LaserScan] | None,
+        movers: Sequence[MovingObstacle] | None = None,
+    ) -> Twist:
+        """The twist to drive from now on; ``movers`` replaces what the tracker finds in the scans."""
+        scans = [] if scan is None else [scan] if isinstance(scan, LaserScan) else list(scan)
+        fault = self.senses.place(state)
+        if fault is None:
+            fault = self.senses.take_in(scans, state.stamp, self.chart.known)
+        if fault is not None:
+            self._say("sensor_lost", fault, choice=None)
+            return self._brake(state)
+        if self.status.state == "sensor_lost":
+            self._say("following", "data are back")
+            self.progress.restart(state.stamp)
+        around = self.senses.surroundings(state.stamp, movers)
+        changed = self.chart.take_in(self.senses.layer)
+        self.status = replace(self.status, tracks=self.senses.tracker.movers, goals_left=len(self._goals))
+        if not self._goals or self.status.state == "blocked":
+            return self._brake(state)
+        if self._arrived(state):
+            self._goals.pop(0)
+            self._path = None
+            self.recovery.reset()
+            if not self._goals:
+                self._say("arrived", "the goal is reached", goals_left=0)
+                return self._brake(state)
+        if not self._plan(state, changed):
+            return self._brake(state)
+        return self._drive(state, around)
+
+    # -- planning ---------------------------------------------------------------------------------
+
+    def _plan(self, state: RobotState, changed: bool) -> bool:
+        """Keeps a path that leads to the goal; False if there is none for now."""
+        here = (state.pose.x, state.pose.y)
+        if self._path is None:
+            return self._replan(state, self.recovery.reason or "a plan is needed")
+        self._s = self._path.project(*here, low=self._s - 0.5, high=self._s + 2.0)
+        if self.progress.unseen(state.stamp, 2.0) and self.recovery.may_replan(state.stamp):
+            return self._replan(state, OUT_OF_SIGHT)
+        foot = self._path.at(self._s)
+        if math.dist(foot, here) > self.config.deviation:
+            return self._replan(state, "avoiding led away from the path")
+        if changed:
+            assert self.status.plan is not None
+            begin = max(self._s, self.status.plan.clear_from + 1e-3)
+            rest = self._path.points[self._path.arc > begin]
+            if len(rest) and self.chart.blocked_at(np.vstack([self._path.at(begin), rest])) is not None:
+                return self._replan(state, "an obstacle blocks the path")
+        return True
+
+    def _replan(self, state: RobotState, reason: str) -> bool:
+        goal = self._goals[0]
+        first = self.status.plan_id == 0
+        try:
+            plan = self.chart.plan((state.pose.x, state.pose.y), (goal.x, goal.y), explored=True)
+        except PlanningError as error:
+            return self._no_plan(state, error)
+        self._path, self._s = plan.path, 0.0
+        self._profile = SpeedProfile(
+            plan.path, self.robot.limits, self.chart.speed_limit(points(plan.path))
+        )
+        if reason == OUT_OF_SIGHT:
+            self.progress.rebase()
+        else:
+            self.progress.restart(state.stamp)
+        self.status = replace(
+            self.status,
+            plan=plan,
+            plan_id=self.status.plan_id + 1,
+            plan_reason=reason,
+            replans=self.status.replans + (0 if first else 1),
+            error=None,
+        )
+        return True
+
+    def _no_plan(self, state: RobotState, error: PlanningError) -> bool:
+        """No way on the chart: what was seen may be gone, so forget it once and wait a little."""
+        passing = isinstance(error, (NoPath, GoalOccupied)) and bool(self.chart.seen.any())
+        if passing or self.senses.tracker.movers:
+            if self.recovery.give_up():
+                self._say("blocked", f"no way is left: {error}", error=error)
+            elif self.recovery.may_forget(state.stamp):
+                self.chart.forget()
+                self._recovered(state, "forget what was seen: no way is left")
+            return False
+        self._say("blocked", str(error), error=error)
+        return False
+
+    # -- driving ----------------------------------------------------------------------------------
+
+    def _drive(self, state: RobotState, around: Surroundings) -> Twist:
+        assert self._path is not None
+        config, now = self.config, state.stamp
+        pose, twist = self._when_it_acts(state)
+        left = self._path.length - self._s
+        goal = self._goals[0]
+        tight = self.robot.footprint.inscribed + self.margins.standing
+        clearances = (tight + config.comfort, tight)
+        target, seen = local_target(
+            self._path, self._s, (state.pose.x, state.pose.y), config.lookahead, clearances, around
+        )
+        assert self.status.plan is not None
+        if self._s < self.status.plan.clear_from - 0.05:  # first out of where it is too tight
+            target, seen = self._path.at(self.status.plan.clear_from), True
+        near = math.hypot(goal.x - state.pose.x, goal.y - state.pose.y) <= config.goal_tolerance
+        aligning = near and goal.heading is not None
+        if aligning:
+            assert goal.heading is not None
+            target = (
+                state.pose.x + math.cos(goal.heading), state.pose.y + math.sin(goal.heading)
+            )
+        bearing = wrap_angle(
+            math.atan2(target[1] - state.pose.y, target[0] - state.pose.x) - state.pose.theta
+        )
+        self.progress.note_sight(now, seen)
+        if self.progress.note(now, left, bearing):
+            self.recovery.progressed(now)
+        wish = Wish(
+            target,
+            self._path.resampled(self._s, self._s + self.robot.limits.v_max * config.dwa.horizon,
+                                 PATH_SPACING),
+            PATH_SPACING,
+            min(
+                self._profile.at(self._s),
+                self._v_wary,
+                float(bend_speed(abs(bearing), self.robot.limits)),
+            ),
+        )
+        if self.recovery.active(now):
+            return self._recover(state, pose, twist, around, wish)
+        choice = self.window.choose(
+            pose, twist, around, wish, self.margins, config.latency, turn_only=aligning
+        )
+        self._judge(state, choice, seen, aligning, target)
+        if self.recovery.active(now):
+            return self._recover(state, pose, twist, around, wish)
+        return self._carry_out(state, choice, pose, twist, around)
+
+    def _judge(self, state: RobotState, choice: Choice, seen: bool, aligning: bool,
+               target: tuple[float, float]) -> None:
+        """Says what is going on, and starts a recovery when nothing is."""
+        now = state.stamp
+        held_up = choice.refusals["in the way of a mover"] > 0
+        slow = abs(state.twist.v) < 0.05 and (choice.command is None or abs(choice.command.v) < 0.05)
+        if held_up and slow and not aligning:
+            if self._waiting_since is None:
+                self._waiting_since = now
+            if now - self._waiting_since < self.config.patience:
+                self.progress.restart(now)
+                self._say("waiting", "a mover passes", choice=choice, target=target)
+                return
+        else:
+            self._waiting_since = None
+        if self.progress.stuck(now, self.config.stuck_time):
+            self._stuck(state)
+        elif aligning:
+            self._say("turning", "to the goal's heading", choice=choice, target=target)
+        elif seen:
+            self._say("following", "the path", choice=choice, target=target)
+        else:
+            self._say("avoiding", "the path cannot be seen from here", choice=choice, target=target)
+
+    def _stuck(self, state: RobotState) -> None:
+        """The next gentlest way out: turn, back off, forget, replan; in the end, give up."""
+        if self.recovery.give_up():
+            self._say("blocked", "no progress, whatever was tried")
+            return
+        step = self.recovery.next(state.stamp, self.robot.limits.v_min < 0.0)
+        self._recovered(state, step)
+        if step == "forget":
+            self.senses.forget()
+            self.chart.forget()
+        if step in ("forget", "replan"):
+            self._path = None
+        self.progress.restart(state.stamp)
+
+    def _recovered(self, state: RobotState, detail: str) -> None:
+        log.info("recovery at %.1f s: %s", state.stamp, detail)
+        self._say("recovering", detail, recoveries=self.status.recoveries + 1)
+
+    def _recover(self, state: RobotState, pose: Pose2D, twist: Twist, around: Surroundings,
+                 wish: Wish) -> Twist:
+        """Turns towards the path, or backs straight off, through the same window and promise."""
+        back_off = self.recovery.step == "back off"
+        if back_off:
+            away = (pose.x - 2.0 * math.cos(pose.theta), pose.y - 2.0 * math.sin(pose.theta))
+            command = self.window.back_off(pose, twist, around, self.margins, self.config.latency)
+            self._say("recovering", "back off", target=away)
+        else:
+            choice = self.window.choose(
+                pose, twist, around, wish, self.margins, self.config.latency, turn_only=True
+            )
+            command = choice.command
+            self._say("recovering", "turn towards the path", choice=choice, target=wish.target)
+        if command is None:
+            return self._brake(state)
+        return self._send(state, command)
+
+    def _carry_out(self, state: RobotState, choice: Choice, pose: Pose2D, twist: Twist,
+                   around: Surroundings) -> Twist:
+        """Drives as chosen, out of the way of movers if standing is no good, or brakes."""
+        command = choice.command
+        if len(around.movers) and (command is None or command == REST):
+            out = self.window.evade(pose, twist, around, self.margins, self.config.latency)
+            command = out if out is not None else command
+        return self._brake(state) if command is None else self._send(state, command)
+
+    # -- the end, and the stop --------------------------------------------------------------------
+
+    def _arrived(self, state: RobotState) -> bool:
+        goal = self._goals[0]
+        if math.hypot(goal.x - state.pose.x, goal.y - state.pose.y) > self.config.goal_tolerance:
+            return False
+        if goal.heading is None:
+            return True
+        return abs(wrap_angle(goal.heading - state.pose.theta)) <= self.config.heading_tolerance
+
+    def _when_it_acts(self, state: RobotState) -> tuple[Pose2D, Twist]:
+        """Pose and twist at the time from which a command given now acts."""
+        latency = self.config.latency
+        if latency <= 0.0 or not self._sent:
+            return state.pose, state.twist
+        ends = [stamp + latency for stamp, _ in self._sent[1:]] + [state.stamp + latency]
+        commands, durations = [], []
+        for (stamp, twist), end in zip(self._sent, ends, strict=True):
+            span = end - max(stamp + latency, state.stamp)
+            if span > 1e-9:
+                commands.append(twist)
+                durations.append(span)
+        if not durations:
+            return state.pose, state.twist
+        x, y, theta, v, omega = coast(
+            *state.pose, *state.twist, np.array(commands), np.array(durations), self.robot.limits
+        )
+        return Pose2D(x, y, theta), Twist(v, omega)
+
+    def _send(self, state: RobotState, command: Twist) -> Twist:
+        """Notes a command that has a certified stop; that stop is carried on if need be."""
+        self._stop = StopProfile(command, self.robot.limits)
+        self._note(state, command)
+        return command
+
+    def _brake(self, state: RobotState) -> Twist:
+        """Carries the last certified stop on."""
+        finite = all(math.isfinite(number) for number in (state.stamp, *state.pose, *state.twist))
+        twist = self._when_it_acts(state)[1] if finite else self._sent[-1][1] if self._sent else REST
+        command = self._stop.next(twist, self.config.period)
+        if finite:
+            self._note(state, command)
+        return command
+
+    def _note(self, state: RobotState, command: Twist) -> None:
+        self._sent.append((state.stamp, command))
+        while len(self._sent) > 1 and self._sent[1][0] + self.config.latency <= state.stamp:
+            self._sent.pop(0)
+
+    def _say(self, state: str, reason: str, **more: object) -> None:
+        self.status = replace(self.status, state=state, reason=reason, **more)  # type: ignore[arg-type]

@@ -1,0 +1,131 @@
+"""From scans to what is known of the surroundings; and when the data are not to be trusted."""
+
+import math
+from collections import deque
+from collections.abc import Sequence
+
+import numpy as np
+
+from dynastar.dwa import Surroundings
+from dynastar.geometry import Pose2D, compose, interpolate, wrap_angle
+from dynastar.grid import OccupancyGrid
+from dynastar.navigator.config import NavigatorConfig
+from dynastar.navigator.status import RobotState
+from dynastar.obstacles import Known, MovingObstacle, ObstacleLayer, Tracker
+from dynastar.obstacles.layer_kernels import scan_points
+from dynastar.robot import Robot
+from dynastar.scan import LaserScan
+
+HISTORY = 2.0  # s of poses kept to place scans by
+
+
+class Senses:
+    """The obstacle layer, the tracker, and the poses that scans are placed by."""
+
+    def __init__(self, robot: Robot, config: NavigatorConfig) -> None:
+        self.robot, self.config = robot, config
+        self.layer, self.tracker = ObstacleLayer(config.layer), Tracker(config.tracker)
+        self._poses: deque[RobotState] = deque()
+        self._beams: dict[Pose2D, int] = {}
+        self._seen: dict[Pose2D, float] = {}  # the newest stamp of each sensor
+        self._fresh = True
+
+    @property
+    def last_scan(self) -> float:
+        """Stamp of the newest scan taken in, -inf if there is none."""
+        return max(self._seen.values(), default=-math.inf)
+
+    def set_grid(self, grid: OccupancyGrid) -> None:
+        """The map, for its keep-out cells and for what stands at the start."""
+        self.layer.set_grid(grid)
+
+    def forget(self) -> None:
+        """Drops everything seen; the next scan starts afresh from where the robot stands."""
+        self.layer.forget()
+        self.tracker.forget()
+        self._fresh = True
+
+    def place(self, state: RobotState) -> str | None:
+        """Takes in where the robot is; what is wrong with that, in words, or None."""
+        if not all(math.isfinite(number) for number in (state.stamp, *state.pose, *state.twist)):
+            return "the robot's state is not finite"
+        if self._poses:
+            last = self._poses[-1]
+            dt = state.stamp - last.stamp
+            if dt < 0.0:
+                return f"time went back by {-dt:.3f} s"
+            if self._jumped(last, state, dt):
+                self._poses.clear()
+                self.forget()
+        self._poses.append(state)
+        while state.stamp - self._poses[0].stamp > HISTORY:
+            self._poses.popleft()
+        self.layer.follow(state.pose.x, state.pose.y)
+        return None
+
+    def take_in(self, scans: Sequence[LaserScan], now: float, known: Known) -> str | None:
+        """Takes in the scans that are new; what makes the data unusable, in words, or None."""
+        fault = None
+        for scan in scans:
+            wrong = scan.fault(self._beams.get(scan.mount))
+            if wrong is None and scan.stamp > now + 0.5 * self.config.period:
+                wrong = f"the scan is {scan.stamp - now:.3f} s ahead of the robot's state"
+            if wrong is not None:
+                fault = wrong
+            elif scan.stamp > self._seen.get(scan.mount, -math.inf):
+                self._see(scan, known)
+        age = now - self.last_scan
+        if age > self.config.scan_age:
+            fault = fault or "no scan" + (f" for {age:.1f} s" if math.isfinite(age) else " yet")
+        else:
+            fault = None
+        shape, blind = self.robot.footprint, self.robot.lidar.range_min
+        here = self._poses[-1].pose
+        self.layer.assume_free(here.x, here.y, shape.circumscribed + blind
+                               + 2.0 * self.layer.config.resolution, now, self._fresh)
+        self._fresh = self._fresh and not math.isfinite(age)
+        self.layer.update(now)
+        return fault
+
+    def surroundings(self, now: float, movers: Sequence[MovingObstacle] | None) -> Surroundings:
+        """What the dynamic window is judged against; ``movers`` in place of those tracked."""
+        if movers is None:
+            dt = now - self.last_scan
+            rows = [(m.x + m.vx * dt, m.y + m.vy * dt, *m[2:]) for m in self.tracker.movers]
+        else:
+            rows = [tuple(m) for m in movers if all(map(math.isfinite, m))]
+        array = np.array(rows, dtype=np.float64).reshape(-1, 6)
+        return Surroundings(
+            self.layer.field, *self.layer.origin, self.layer.config.resolution, array
+        )
+
+    def _see(self, scan: LaserScan, known: Known) -> None:
+        self._beams.setdefault(scan.mount, len(scan.ranges))
+        self._seen[scan.mount] = scan.stamp
+        sensor = compose(self._pose_at(scan.stamp), scan.mount)
+        points, beams = scan_points(
+            scan.ranges, scan.range_min, scan.range_max, scan.angle_min, scan.angle_increment,
+            *sensor,
+        )
+        moving = self.tracker.see(scan, sensor, points, beams, self.layer, known)
+        self.layer.see(
+            scan, sensor, points, moving, self.config.range_error, self.config.heading_error
+        )
+
+    def _pose_at(self, stamp: float) -> Pose2D:
+        after = self._poses[-1]
+        for before in reversed(self._poses):
+            if before.stamp <= stamp:
+                span = after.stamp - before.stamp
+                share = min(1.0, (stamp - before.stamp) / span) if span > 0.0 else 0.0
+                return interpolate(before.pose, after.pose, share)
+            after = before
+        return self._poses[0].pose
+
+    def _jumped(self, last: RobotState, state: RobotState, dt: float) -> bool:
+        """Whether the pose moved further than the robot can have (the map frame was corrected)."""
+        limits, config = self.robot.limits, self.config
+        moved = math.hypot(state.pose.x - last.pose.x, state.pose.y - last.pose.y)
+        turned = abs(wrap_angle(state.pose.theta - last.pose.theta))
+        far = max(limits.v_max, -limits.v_min) * dt * 1.2 + 4.0 * config.pose_error + 0.05
+        return moved > far or turned > limits.omega_max * dt * 1.2 + 4.0 * config.heading_error + 0.1

@@ -1,0 +1,59 @@
+"""The local target: where the local window meets the global path (section V, step 2)."""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from dynastar.dwa import Surroundings
+from dynastar.path import Path
+
+SPACING = 0.1  # m between the points of the path that are tried
+NEAREST = 0.4  # m, a target to steer by is further
+
+
+@njit(cache=True)
+def _sees(field, x0, y0, resolution, clearance, ax, ay, bx, by):
+    """Whether the straight line from a to b keeps ``clearance`` from everything not observed free."""
+    length = math.hypot(bx - ax, by - ay)
+    n = max(1, int(math.ceil(2.0 * length / resolution)))
+    for i in range(1, n + 1):
+        x, y = ax + (bx - ax) * i / n, ay + (by - ay) * i / n
+        column, row = int(math.floor((x - x0) / resolution)), int(math.floor((y - y0) / resolution))
+        if not (0 <= row < field.shape[0] and 0 <= column < field.shape[1]):
+            return False
+        if field[row, column] < clearance:
+            return False
+    return True
+
+
+@njit(cache=True)
+def farthest_visible(field, x0, y0, resolution, clearance, x, y, points):
+    """Index of the farthest of ``points`` (n, 2), in the path's order, that (x, y) sees; or -1."""
+    for i in range(len(points) - 1, -1, -1):
+        if _sees(field, x0, y0, resolution, clearance, x, y, points[i, 0], points[i, 1]):
+            return i
+    return -1
+
+
+def local_target(
+    path: Path,
+    s: float,
+    position: tuple[float, float],
+    lookahead: float,
+    clearances: tuple[float, ...],
+    around: Surroundings,
+) -> tuple[tuple[float, float], bool]:
+    """The farthest point of the path that can be seen up to ``lookahead`` metres on from ``s``.
+
+    A line of sight has to keep the first of ``clearances`` (m, falling) that any point allows. With
+    the target, whether there is any; if there is none far enough to steer by, the path just ahead.
+    """
+    points: npt.NDArray[np.float64] = path.resampled(s, s + lookahead, SPACING)
+    field = around.field, around.x0, around.y0, around.resolution
+    for clearance in clearances:
+        i = farthest_visible(*field, clearance, *position, points)
+        if i >= 0 and (i == len(points) - 1 or math.dist(points[i], position) > NEAREST):
+            return (float(points[i, 0]), float(points[i, 1])), True
+    return path.at(s + NEAREST), False

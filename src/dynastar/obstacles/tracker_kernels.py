@@ -1,0 +1,202 @@
+"""Kernels of the tracker: clusters of a scan, and constant-velocity tracks of them."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+# Columns of a cluster: centre, radius, share of points in space seen free before, first, last point.
+C_X, C_Y, C_RADIUS, C_FRESH, C_FIRST, C_LAST = range(6)
+# Columns of a track. x and y share one covariance, for the filter treats them alike.
+T_X, T_Y, T_VX, T_VY, T_PP, T_PV, T_VV, T_RADIUS, T_HITS, T_SEEN, T_FRESH = range(11)
+T_X0, T_Y0, T_MOVING, T_SLOW_SINCE, T_CLUSTER, T_TOP = range(11, 17)
+COLUMNS = 17
+TOP_KEPT = 0.97  # of a mover's top speed from scan to scan
+DISC_DEPTH = 0.25 * math.pi  # mean depth of a disc's visible half, in radii
+
+
+@njit(cache=True)
+def clusters(points, beams, n_beams, full_circle, step, sensor_x, sensor_y, gap, widest,
+             free_at, x0, y0, resolution, since, known, known_frame):
+    """Groups neighbouring points into things that could move: (m, 6), see the columns above.
+
+    A group breaks where neighbours lie further apart than ``gap`` plus twice the beams' spacing;
+    what is wider than ``widest`` or stands where the map shows something is left out.
+    ``known_frame`` is (resolution, x, y, yaw) of the map whose widened obstacles ``known`` marks.
+    """
+    n = len(points)
+    found = np.empty((n, 6))
+    m = 0
+    if n == 0:
+        return found[:0]
+    breaks = np.zeros(n, np.bool_)  # a break before point i
+    for i in range(n):
+        j = i - 1 if i > 0 else n - 1
+        dx, dy = points[i, 0] - points[j, 0], points[i, 1] - points[j, 1]
+        r = math.hypot(points[i, 0] - sensor_x, points[i, 1] - sensor_y)
+        skipped = (beams[i] - beams[j]) % n_beams
+        far = math.hypot(dx, dy) > gap + 2.0 * r * step
+        breaks[i] = far or skipped > 3 or (i == 0 and not full_circle)
+    first = 0
+    while first < n and not breaks[first]:
+        first += 1
+    if first == n:
+        return found[:0]  # one group all round: walls
+    cos, sin = math.cos(known_frame[3]), math.sin(known_frame[3])
+    start = first
+    while start < first + n:
+        stop = start + 1
+        while stop < first + n and not breaks[stop % n]:
+            stop += 1
+        count = stop - start
+        a, b = start % n, (stop - 1) % n
+        width = math.hypot(points[b, 0] - points[a, 0], points[b, 1] - points[a, 1])
+        if count >= 2 and width <= widest:
+            cx = cy = 0.0
+            fresh = on_map = 0
+            low_x = low_y = np.inf
+            high_x = high_y = -np.inf
+            for k in range(start, stop):
+                px, py = points[k % n, 0], points[k % n, 1]
+                cx += px
+                cy += py
+                low_x, high_x = min(low_x, px), max(high_x, px)
+                low_y, high_y = min(low_y, py), max(high_y, py)
+                row, column = int(math.floor((py - y0) / resolution)), int(
+                    math.floor((px - x0) / resolution)
+                )
+                if (0 <= row < free_at.shape[0] and 0 <= column < free_at.shape[1]
+                        and free_at[row, column] > since):
+                    fresh += 1
+                dx, dy = px - known_frame[1], py - known_frame[2]
+                column = int(math.floor((cos * dx + sin * dy) / known_frame[0]))
+                row = int(math.floor((cos * dy - sin * dx) / known_frame[0]))
+                if 0 <= row < known.shape[0] and 0 <= column < known.shape[1] and known[row, column]:
+                    on_map += 1
+            cx, cy = cx / count, cy / count
+            if 2 * on_map < count and math.hypot(high_x - low_x, high_y - low_y) <= widest:
+                r = max(math.hypot(cx - sensor_x, cy - sensor_y), 1e-9)
+                radius = max(0.5 * (width + r * step), 0.05)
+                push = DISC_DEPTH * radius / r
+                found[m, C_X] = cx + push * (cx - sensor_x)
+                found[m, C_Y] = cy + push * (cy - sensor_y)
+                found[m, C_RADIUS] = radius
+                found[m, C_FRESH] = fresh / count
+                found[m, C_FIRST] = start
+                found[m, C_LAST] = stop - 1
+                m += 1
+        start = stop
+    return found[:m]
+
+
+@njit(cache=True)
+def predict(tracks, dt, acceleration):
+    """Moves every track ahead by ``dt`` under white acceleration noise (m/s2)."""
+    q = acceleration * acceleration
+    for t in range(len(tracks)):
+        row = tracks[t]
+        row[T_X] += row[T_VX] * dt
+        row[T_Y] += row[T_VY] * dt
+        row[T_PP] += 2.0 * dt * row[T_PV] + dt * dt * row[T_VV] + 0.25 * q * dt**4
+        row[T_PV] += dt * row[T_VV] + 0.5 * q * dt**3
+        row[T_VV] += q * dt * dt
+        row[T_CLUSTER] = -1.0
+
+
+@njit(cache=True)
+def associate(tracks, found, gate):
+    """Gives clusters to tracks, nearest pairs first, within ``gate`` metres and three deviations.
+
+    Sets the tracks' T_CLUSTER; returns which clusters are taken (m,).
+    """
+    taken = np.zeros(len(found), np.bool_)
+    while True:
+        best, best_t, best_c = np.inf, -1, -1
+        for t in range(len(tracks)):
+            if tracks[t, T_CLUSTER] >= 0.0:
+                continue
+            for c in range(len(found)):
+                if taken[c]:
+                    continue
+                d = math.hypot(found[c, C_X] - tracks[t, T_X], found[c, C_Y] - tracks[t, T_Y])
+                if d < best and d < gate + 3.0 * math.sqrt(tracks[t, T_PP]):
+                    best, best_t, best_c = d, t, c
+        if best_t < 0:
+            return taken
+        tracks[best_t, T_CLUSTER] = best_c
+        taken[best_c] = True
+
+
+@njit(cache=True)
+def correct(tracks, found, error, now):
+    """The Kalman update of every track with its cluster; ``error`` is a centre's deviation (m)."""
+    r = error * error
+    for t in range(len(tracks)):
+        row = tracks[t]
+        if row[T_CLUSTER] < 0.0:
+            continue
+        c = found[int(row[T_CLUSTER])]
+        s = row[T_PP] + r
+        k_p, k_v = row[T_PP] / s, row[T_PV] / s
+        ex, ey = c[C_X] - row[T_X], c[C_Y] - row[T_Y]
+        row[T_X] += k_p * ex
+        row[T_Y] += k_p * ey
+        row[T_VX] += k_v * ex
+        row[T_VY] += k_v * ey
+        row[T_VV] -= k_v * row[T_PV]
+        row[T_PV] -= k_p * row[T_PV]
+        row[T_PP] -= k_p * row[T_PP]
+        row[T_RADIUS] = max(c[C_RADIUS], 0.98 * row[T_RADIUS])
+        row[T_FRESH] += 0.3 * (c[C_FRESH] - row[T_FRESH])
+        row[T_HITS] += 1.0
+        row[T_SEEN] = now
+
+
+@njit(cache=True)
+def judge(tracks, now, scans, slowest, fresh_share, rest_time):
+    """Decides which tracks move; returns those confirmed just now (bool per track).
+
+    A track moves once ``scans`` scans agree, it is significantly faster than ``slowest``, has left
+    where it was first seen, and mostly lies in space that was seen free before. It rests again
+    after ``rest_time`` seconds below the speed.
+    """
+    confirmed = np.zeros(len(tracks), np.bool_)
+    for t in range(len(tracks)):
+        row = tracks[t]
+        speed = math.hypot(row[T_VX], row[T_VY])
+        row[T_TOP] = max(speed, TOP_KEPT * row[T_TOP]) if row[T_MOVING] > 0.0 else 0.0
+        if row[T_MOVING] > 0.0:
+            if speed > 0.5 * slowest:
+                row[T_SLOW_SINCE] = now
+            elif now - row[T_SLOW_SINCE] > rest_time:
+                row[T_MOVING] = 0.0
+                row[T_X0], row[T_Y0] = row[T_X], row[T_Y]
+        elif row[T_CLUSTER] >= 0.0 and row[T_HITS] >= scans:
+            gone = math.hypot(row[T_X] - row[T_X0], row[T_Y] - row[T_Y0])
+            sure = speed > slowest and speed > 2.0 * math.sqrt(row[T_VV])
+            if sure and gone > 0.1 and row[T_FRESH] > fresh_share:
+                row[T_MOVING] = 1.0
+                row[T_SLOW_SINCE] = now
+                confirmed[t] = True
+    return confirmed
+
+
+@njit(cache=True)
+def on_tracks(points, tracks, found, margin):
+    """Which points belong to something that moves: of its cluster, or within its disc and a margin."""
+    moving = np.zeros(len(points), np.bool_)
+    n = len(points)
+    for t in range(len(tracks)):
+        row = tracks[t]
+        if row[T_MOVING] == 0.0:
+            continue
+        if row[T_CLUSTER] >= 0.0:
+            c = found[int(row[T_CLUSTER])]
+            for k in range(int(c[C_FIRST]), int(c[C_LAST]) + 1):
+                moving[k % n] = True
+        reach = row[T_RADIUS] + margin
+        for i in range(n):
+            dx, dy = points[i, 0] - row[T_X], points[i, 1] - row[T_Y]
+            if dx * dx + dy * dy < reach * reach:
+                moving[i] = True
+    return moving

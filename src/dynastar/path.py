@@ -1,0 +1,106 @@
+"""Paths and trajectories: what is planned and what was driven."""
+
+from dataclasses import dataclass, field
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+
+TURN_TOLERANCE = 0.25  # m, of the Douglas-Peucker simplification before bends are counted
+TURN_ANGLE = np.radians(10.0)  # bends up to this are none
+
+
+def turning_points(points: npt.ArrayLike) -> int:
+    """Bends over 10 degrees of an (n, 2) polyline simplified by Douglas-Peucker at 0.25 m."""
+    line = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+    if len(line) < 3:
+        return 0
+    origin = line[0]
+    kept = cv2.approxPolyDP((line - origin).astype(np.float32), TURN_TOLERANCE, False)
+    steps = np.diff(kept.reshape(-1, 2).astype(np.float64), axis=0)
+    steps = steps[np.hypot(steps[:, 0], steps[:, 1]) > 1e-6]
+    headings = np.arctan2(steps[:, 1], steps[:, 0])
+    bends = np.abs((np.diff(headings) + np.pi) % (2 * np.pi) - np.pi)
+    return int((bends > TURN_ANGLE).sum())
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """A polyline in the map frame: ``points`` (n >= 1, 2) in metres, ``arc`` (n,) the length so far."""
+
+    points: Floats
+    arc: Floats = field(init=False)
+
+    def __post_init__(self) -> None:
+        points = np.array(self.points, dtype=np.float64).reshape(-1, 2)
+        if len(points) == 0 or not np.isfinite(points).all():
+            raise ValueError("a path needs at least one point, all finite")
+        steps = np.diff(points, axis=0)
+        arc = np.concatenate([[0.0], np.cumsum(np.hypot(steps[:, 0], steps[:, 1]))])
+        for name, array in (("points", points), ("arc", arc)):
+            array.flags.writeable = False
+            object.__setattr__(self, name, array)
+
+    @property
+    def length(self) -> float:
+        """Length in metres."""
+        return float(self.arc[-1])
+
+    @property
+    def turns(self) -> int:
+        """Turning points, see ``turning_points``."""
+        return turning_points(self.points)
+
+    def at(self, s: float) -> tuple[float, float]:
+        """The point (x, y) ``s`` metres along the path, clamped to its ends."""
+        return (
+            float(np.interp(s, self.arc, self.points[:, 0])),
+            float(np.interp(s, self.arc, self.points[:, 1])),
+        )
+
+    def resampled(self, start: float, stop: float, spacing: float) -> Floats:
+        """Points (m >= 2, 2) every ``spacing`` metres or less from ``start`` to ``stop`` metres along."""
+        stop = min(max(stop, start), self.length)
+        count = max(2, int(np.ceil((stop - start) / spacing)) + 1)
+        s = np.linspace(min(start, stop), stop, count)
+        return np.column_stack(
+            [np.interp(s, self.arc, self.points[:, 0]), np.interp(s, self.arc, self.points[:, 1])]
+        )
+
+    def project(self, x: float, y: float, low: float = 0.0, high: float = np.inf) -> float:
+        """Metres along the path of its point nearest to (x, y), looked for from ``low`` to ``high``."""
+        if len(self.points) == 1:
+            return 0.0
+        a, step = self.points[:-1], np.diff(self.points, axis=0)
+        length = np.diff(self.arc)
+        along = ((x - a[:, 0]) * step[:, 0] + (y - a[:, 1]) * step[:, 1]) / np.maximum(
+            length, 1e-12
+        )
+        first, last = max(low, 0.0), min(max(high, low), self.length)
+        s = np.clip(self.arc[:-1] + np.clip(along, 0.0, length), first, last)
+        s = np.clip(s, self.arc[:-1], self.arc[1:])
+        legal = (s >= first - 1e-9) & (s <= last + 1e-9)
+        foot = a + step * ((s - self.arc[:-1]) / np.maximum(length, 1e-12))[:, None]
+        gap = np.hypot(foot[:, 0] - x, foot[:, 1] - y)
+        return float(s[np.argmin(np.where(legal, gap, np.inf))])
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """What was driven: ``times`` (n,) s, ``poses`` (n, 3) m and rad, ``twists`` (n, 2) m/s, rad/s."""
+
+    times: Floats
+    poses: Floats
+    twists: Floats
+
+    @property
+    def path(self) -> Path:
+        """The positions alone."""
+        return Path(self.poses[:, :2])
+
+    @property
+    def length(self) -> float:
+        """Driven length in metres."""
+        return self.path.length

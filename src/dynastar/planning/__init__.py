@@ -1,0 +1,21 @@
+"""Global planning (section III): searches, the improved heuristic, smoothing."""
+
+from dynastar.planning.heuristic import PLANNERS, HeuristicConfig
+from dynastar.planning.planner import GridPlanner, Plan, PlannerConfig, plan, warm_up
+from dynastar.planning.search import SearchGrid, SearchResult
+from dynastar.planning.segments import segment_clear
+from dynastar.planning.smoothing import smooth
+
+__all__ = [
+    "PLANNERS",
+    "GridPlanner",
+    "HeuristicConfig",
+    "Plan",
+    "PlannerConfig",
+    "SearchGrid",
+    "SearchResult",
+    "plan",
+    "segment_clear",
+    "smooth",
+    "warm_up",
+]

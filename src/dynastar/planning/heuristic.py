@@ -1,0 +1,65 @@
+"""The improved heuristic (section III.A, Eqs. 2-3) and what each planner leaves of it."""
+
+import math
+from collections.abc import Callable
+from typing import Annotated, Literal, NamedTuple
+
+from dynastar.config import Field
+from dynastar.planning.search_kernel import STRAIGHT, Terms
+
+
+class HeuristicConfig(NamedTuple):
+    """The terms of h_A(n) = e^(P/Q) (h(n) + h(p) - k cos(beta)), each with its readings.
+
+    The defaults are the readings this project decided on; the literal ones are there to compare.
+    """
+
+    estimate: Annotated[
+        Literal["octile", "euclidean"], Field("h: the way of an 8-connected grid, or the line")
+    ] = "octile"
+    exponential: Annotated[bool, Field("whether e^(P/Q) weighs the estimate")] = True
+    q: Annotated[
+        Literal["rectangle", "line", "ratio"],
+        Field(
+            "Q: cells of the rectangle start - goal, or of a line between them; "
+            "or P / Q as the obstacles around n over all obstacles"
+        ),
+    ] = "rectangle"
+    around: Annotated[int, Field("with q = ratio, how far 'around n' goes", "cells", 1, 10000)] = 1
+    parent: Annotated[bool, Field("whether the parent's estimate h(p) is added")] = True
+    k: Annotated[float, Field("weight of cos(beta), 0 for none", "cells", 0.0, 1e6)] = 1.0
+    beta: Annotated[
+        Literal["progress", "interior"],
+        Field("beta: between start -> n and n -> goal, or the angle at n from start to goal"),
+    ] = "progress"
+    weight: Annotated[float, Field("w of the weighted A*, no part of the others", "", 0.0, 100)] = (
+        2.0
+    )
+
+
+# What each planner leaves of Eq. 3: f(n) = g(n) + weight e^(P/Q) (h(n) + h(p) - k cos(beta)).
+PLANNERS: dict[str, Callable[[HeuristicConfig], HeuristicConfig]] = {
+    "dijkstra": lambda c: c._replace(exponential=False, parent=False, k=0.0, weight=0.0),
+    "astar": lambda c: c._replace(exponential=False, parent=False, k=0.0, weight=1.0),
+    "weighted": lambda c: c._replace(exponential=False, parent=False, k=0.0),
+    "improved": lambda c: c._replace(weight=1.0),
+}
+
+
+def kernel_terms(
+    config: HeuristicConfig, start: tuple[int, int], goal: tuple[int, int], occupied: int
+) -> Terms:
+    """The numbers that the search kernel wants; ``occupied`` is how many cells of the map are."""
+    rows, columns = abs(start[0] - goal[0]) + 1, abs(start[1] - goal[1]) + 1
+    q = {"rectangle": rows * columns, "line": max(rows, columns), "ratio": max(occupied, 1)}
+    return Terms(
+        weight=float(config.weight),
+        euclidean=config.estimate == "euclidean",
+        adaptive=config.exponential or config.parent or config.k > 0.0,
+        exponential=config.exponential,
+        q=float(q[config.q]),
+        around=int(config.around) if config.q == "ratio" else 0,
+        parent=config.parent,
+        # The angle at n is pi less the angle of progress, so its cosine has the other sign.
+        k=math.copysign(config.k * STRAIGHT, 1.0 if config.beta == "progress" else -1.0),
+    )

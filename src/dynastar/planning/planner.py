@@ -1,0 +1,281 @@
+"""Planning on a map: search, way out of the inflation, smoothing, and the errors in metres."""
+
+import functools
+import math
+import time
+from dataclasses import dataclass
+from typing import Annotated, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.clearance import inflate
+from dynastar.config import Field, choose
+from dynastar.errors import ConfigError, GoalOccupied, NoPath, OutOfMap, StartOccupied
+from dynastar.grid import OccupancyGrid, Unknown
+from dynastar.path import Path
+from dynastar.planning.escape import reach_of_escape, ways_out
+from dynastar.planning.heuristic import PLANNERS, HeuristicConfig
+from dynastar.planning.search import Cell, Cells, SearchGrid, SearchResult, check_window
+from dynastar.planning.segments import first_contact, is_clear, mask_bytes
+from dynastar.planning.smoothing import smooth
+
+Mask = npt.NDArray[np.bool_]
+Point = tuple[float, float]
+
+
+class PlannerConfig(NamedTuple):
+    """How a path is found and what is made of it."""
+
+    planner: Annotated[str, Field("dijkstra, astar, weighted or improved")] = "improved"
+    heuristic: HeuristicConfig = HeuristicConfig()
+    smoothing: Annotated[bool, Field("whether the path is pulled taut")] = True
+    rounding: Annotated[float, Field("where a corner's rounding may begin", "m", 0.0, 10.0)] = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """What a planner found.
+
+    ``path`` is smoothed, ``grid_path`` the way over the cells' centres; both lie in the map frame,
+    in metres, and run exactly from start to goal. ``cells`` (n, 2) are the way's cells and ``cost``
+    their length in cells. ``expanded`` counts the cells that were expanded, ``explored`` (m, 2)
+    lists them or is None; ``time_ms`` is for search and smoothing. ``radius`` (m) is kept free
+    along ``path`` from ``clear_from`` metres on: before, it leads a robot out that was too close.
+    """
+
+    planner: str
+    path: Path
+    grid_path: Path
+    cells: Cells
+    cost: float
+    expanded: int
+    explored: Cells | None
+    time_ms: float
+    radius: float
+    clear_from: float
+
+
+class GridPlanner:
+    """A map prepared once for planning a disc's way over it, again and again.
+
+    ``radius`` is the disc's in metres; ``unknown`` says whether unknown cells are "free" or
+    "blocked" to it. Blocked is also what lies outside the map. Raises ConfigError for a radius
+    below 0 or a planner that does not exist.
+    """
+
+    def __init__(
+        self,
+        grid: OccupancyGrid,
+        radius: float,
+        unknown: Unknown = "blocked",
+        config: PlannerConfig = PlannerConfig(),  # noqa: B008 - immutable
+    ) -> None:
+        if not (math.isfinite(radius) and radius >= 0.0):
+            raise ConfigError(f"a planning radius is {radius}: expected 0 m or more")
+        choose(config.planner, PLANNERS, "planner")
+        self.grid = grid
+        self.radius = float(radius)
+        self.config = config
+        self._radius_cells = self.radius / grid.resolution
+        self._blocked = mask_bytes(grid.blocked(unknown))
+        self._search = SearchGrid(inflate(self._blocked, self._radius_cells))
+        warm_up()
+
+    @property
+    def blocked(self) -> Mask:
+        """Where something is, [rows, columns], read-only."""
+        mask = self._blocked.view(np.bool_)
+        mask.flags.writeable = False
+        return mask
+
+    @property
+    def inflated(self) -> Mask:
+        """Where the disc's centre may not be, [rows, columns], read-only."""
+        return self._search.occupied
+
+    def mark(self, row0: int, col0: int, patch_blocked: npt.ArrayLike) -> None:
+        """New truth for the window of the map at (row0, col0): true where something is now.
+
+        Only the window's surroundings are inflated anew. Raises OutOfMap if it leaves the map.
+        """
+        patch = np.asarray(patch_blocked, dtype=bool)
+        whole = (self.grid.rows, self.grid.columns)
+        check_window(row0, col0, patch.shape, whole)
+        rows, columns = patch.shape
+        self._blocked[row0 : row0 + rows, col0 : col0 + columns] = patch
+        reach = math.ceil(self._radius_cells + 0.5)
+        top, left = max(row0 - reach, 0), max(col0 - reach, 0)
+        bottom = min(row0 + rows + reach, whole[0])
+        right = min(col0 + columns + reach, whole[1])
+        seen_top, seen_left = max(top - reach, 0), max(left - reach, 0)
+        seen = inflate(
+            self._blocked[seen_top : bottom + reach, seen_left : right + reach], self._radius_cells
+        )
+        self._search.update(
+            top,
+            left,
+            seen[top - seen_top : bottom - seen_top, left - seen_left : right - seen_left],
+        )
+
+    def plan(self, start_xy: Point, goal_xy: Point, explored: bool = False) -> Plan:
+        """The path from start to goal, both (x, y) in metres.
+
+        A start that is too close to something is led out the shortest way first. Raises OutOfMap,
+        StartOccupied, GoalOccupied or NoPath.
+        """
+        began = time.perf_counter()
+        start, goal = self._point(start_xy, "start"), self._point(goal_xy, "goal")
+        goal_cell = self._fitting_cell(goal)
+        if goal_cell is None:
+            raise GoalOccupied(f"the goal {self._too_close(goal)}")
+        start_cell = self._fitting_cell(start)
+        if start_cell is not None:
+            way_out = np.array([start_cell], np.int32)
+            found = self._find(start_cell, goal_cell, explored)
+        else:
+            way_out, found = self._find_from_inside(start, goal_cell, explored)
+        lead = _without_repeats(np.vstack([[start], way_out + 0.5]))
+        if start_cell is not None:
+            lead = lead[:1]
+        centres = found.cells + 0.5
+        if tuple(start_xy) == tuple(goal_xy):
+            centres = centres[:0]
+        main = _without_repeats(np.vstack([lead[-1:], centres, [goal]]))
+        grid_line = np.vstack([lead, main[1:]])
+        line = grid_line
+        if self.config.smoothing:
+            rounding = self.config.rounding / self.grid.resolution
+            lead = smooth(self._blocked, lead, 0.0)
+            line = np.vstack([lead, smooth(self._blocked, main, self._radius_cells, rounding)[1:]])
+        time_ms = 1e3 * (time.perf_counter() - began)
+        lead_steps = np.diff(lead, axis=0)
+        return Plan(
+            planner=self.config.planner,
+            path=self._path(line, start_xy, goal_xy),
+            grid_path=self._path(grid_line, start_xy, goal_xy),
+            cells=np.vstack([way_out[:-1], found.cells]),
+            cost=found.cost + float(np.hypot(*np.diff(way_out, axis=0).T).sum()),
+            expanded=found.expanded,
+            explored=found.explored,
+            time_ms=time_ms,
+            radius=self.radius,
+            clear_from=float(np.hypot(*lead_steps.T).sum()) * self.grid.resolution,
+        )
+
+    def path_blocked_at(self, points: npt.ArrayLike, radius: float | None = None) -> float | None:
+        """Metres along a polyline (n, 2), in metres, up to where the disc first touches something.
+
+        None if it can follow the polyline to its end. ``radius`` (m) stands in for the planner's.
+        """
+        cells = self.grid.frame.points_to_grid(points)
+        if len(cells) == 1:
+            cells = np.repeat(cells, 2, axis=0)
+        radius_cells = self._radius_cells if radius is None else radius / self.grid.resolution
+        at = first_contact(self._blocked, cells, float(radius_cells))
+        return None if at < 0.0 else at * self.grid.resolution
+
+    def _find(self, start: Cell, goal: Cell, explored: bool) -> SearchResult:
+        config = self.config
+        return self._search.search(start, goal, config.planner, config.heuristic, explored)
+
+    def _find_from_inside(
+        self, start: Point, goal: Cell, explored: bool
+    ) -> tuple[Cells, SearchResult]:
+        """The shortest way out of the inflation that leads on to the goal, and the rest."""
+        cell = (int(start[0]), int(start[1]))
+        no_path: NoPath | None = None
+        for way in ways_out(self.blocked, self.inflated, cell, self._radius_cells):
+            exit_cell = (int(way[-1, 0]), int(way[-1, 1]))
+            if no_path is not None and self._search.reached(exit_cell):
+                continue
+            try:
+                return way, self._find(exit_cell, goal, explored)
+            except NoPath as error:
+                no_path = error
+        if no_path is not None:
+            raise no_path
+        looked = reach_of_escape(self._radius_cells) * self.grid.resolution
+        raise StartOccupied(
+            f"the start {self._too_close(start)}, and no way out was found within {looked:.3g} m"
+        )
+
+    def _point(self, xy: Point, name: str) -> Point:
+        """(row, column) of a world point in fractions of cells."""
+        row, column = self.grid.frame.to_grid(*xy)
+        if not (0 <= row < self.grid.rows and 0 <= column < self.grid.columns):
+            raise OutOfMap(
+                f"the {name} ({xy[0]:g}, {xy[1]:g}) is off the map, which spans "
+                f"{self.grid.extent()}"
+            )
+        return row, column
+
+    def _fitting_cell(self, point: Point) -> Cell | None:
+        """The nearest cell from whose centre the disc can go straight to a point, or None."""
+        row, column = int(point[0]), int(point[1])
+        near = [(row + i, column + j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
+        near.sort(key=lambda cell: math.dist(point, (cell[0] + 0.5, cell[1] + 0.5)))
+        inflated = self.inflated
+        for r, c in near:
+            if not (0 <= r < self.grid.rows and 0 <= c < self.grid.columns) or inflated[r, c]:
+                continue
+            if is_clear(self._blocked, *point, r + 0.5, c + 0.5, self._radius_cells):
+                return r, c
+        return None
+
+    def _too_close(self, point: Point) -> str:
+        """What is wrong with a point that the disc does not fit at, in words."""
+        x, y = self.grid.frame.to_world(*point)
+        if self._blocked[int(point[0]), int(point[1])]:
+            return f"({x:g}, {y:g}) lies in an obstacle"
+        gap = self._clearance_at(point) * self.grid.resolution
+        if gap < self.radius:
+            return f"({x:g}, {y:g}) has {gap:.3g} m of clearance where {self.radius:g} m are needed"
+        return f"({x:g}, {y:g}) has no cell beside it where the footprint fits"
+
+    def _clearance_at(self, point: Point) -> float:
+        """Cells from a point to the nearest blocked square or the map's edge."""
+        rows, columns = np.nonzero(self._blocked)
+        away_y = np.maximum(np.abs(rows + 0.5 - point[0]) - 0.5, 0.0)
+        away_x = np.maximum(np.abs(columns + 0.5 - point[1]) - 0.5, 0.0)
+        edge = min(*point, self.grid.rows - point[0], self.grid.columns - point[1])
+        return float(np.hypot(away_y, away_x).min(initial=edge))
+
+    def _path(self, line: npt.NDArray[np.float64], start_xy: Point, goal_xy: Point) -> Path:
+        points = self.grid.frame.points_to_world(line)
+        points[0], points[-1] = start_xy[:2], goal_xy[:2]
+        if len(points) == 1 and tuple(start_xy) != tuple(goal_xy):
+            points = np.array([start_xy, goal_xy])
+        return Path(points)
+
+
+def plan(
+    grid: OccupancyGrid,
+    start: Point,
+    goal: Point,
+    planner: str = "improved",
+    radius: float = 0.0,
+    unknown: Unknown = "blocked",
+    explored: bool = False,
+) -> Plan:
+    """Plans once: from ``start`` to ``goal``, (x, y) in metres, for a disc of ``radius`` metres.
+
+    Raises OutOfMap, StartOccupied, GoalOccupied or NoPath, and ConfigError for an unknown planner.
+    """
+    config = PlannerConfig(planner=planner)
+    return GridPlanner(grid, radius, unknown, config).plan(start, goal, explored)
+
+
+@functools.cache
+def warm_up() -> None:
+    """Compiles or loads the kernels, once in a process, so that no plan has to wait for them."""
+    blocked = np.zeros((3, 3), dtype=bool)
+    SearchGrid(blocked).search((0, 0), (2, 2), "improved")
+    smooth(blocked, [[0.5, 0.5], [0.5, 2.5], [2.5, 2.5]], 0.0, 1.0)
+    first_contact(mask_bytes(blocked), np.ones((2, 2)), 0.5)
+
+
+def _without_repeats(line: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """A polyline (n, 2) without points that are where the one before is."""
+    steps = np.abs(np.diff(line, axis=0)).max(axis=1)
+    return line[np.concatenate([[True], steps > 1e-9])]

@@ -1,0 +1,233 @@
+"""The one search kernel: Eq. 3 on an 8-connected grid that cuts no corners.
+
+The grid is padded by one blocked cell all round and flattened; a node is an index into it. Lengths
+are whole numbers with 1393 / 985 for sqrt(2), 2.6e-7 off, so that equal ways tie exactly; a cost
+that is told to anybody is counted anew from the steps. What is known of a node sits in one int64:
+
+    g (36 bits) | stamp of the search (22) | direction it was reached in (4) | closed (1)
+
+and an entry of the open list is f (36 bits) | 2^27 - serial number (27): of equal f the newest
+comes first. A node whose way got shorter is entered again; its old entries find it closed.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+Ints = npt.NDArray[np.int64]
+Bytes = npt.NDArray[np.uint8]
+
+STRAIGHT, DIAGONAL = 985, 1393
+MAX_NODES = 1 << 25
+
+# Directions 0 to 7 go round; the odd ones are diagonal.
+ROW_STEP = np.array([1, 1, 0, -1, -1, -1, 0, 1])
+COLUMN_STEP = np.array([0, 1, 1, 1, 0, -1, -1, -1])
+
+G_SHIFT, STAMP_SHIFT, DIRECTION_SHIFT = 27, 5, 1
+MAX_STAMP = (1 << (G_SHIFT - STAMP_SHIFT)) - 1
+STAMP_BITS = MAX_STAMP << STAMP_SHIFT
+NO_DIRECTION = 8  # how the start was reached
+
+F_SHIFT = 27
+SERIAL_BITS = (1 << F_SHIFT) - 1
+MAX_F = (1 << 36) - 1
+
+
+class Terms(NamedTuple):
+    """Eq. 3 in the kernel's units; ``adaptive`` is false if h(n) and the weight are all there is.
+
+    ``around`` > 0 takes P from the square of that half width round n, else from the rectangle
+    n - goal. ``k`` is negative if beta is the interior angle at n.
+    """
+
+    weight: float
+    euclidean: bool
+    adaptive: bool
+    exponential: bool
+    q: float
+    around: int
+    parent: bool
+    k: float
+
+
+@njit(cache=True)
+def find_moves(blocked: Bytes, moves: Bytes, top: int, left: int, bottom: int, right: int) -> None:
+    """Sets bit d of ``moves`` [rows, columns] (padded) where direction d is legal, in a window.
+
+    A diagonal step needs both cells beside it free. The window ends before ``bottom``, ``right``.
+    """
+    for y in range(top, bottom):
+        for x in range(left, right):
+            free = 0
+            if not blocked[y, x]:
+                for d in range(8):
+                    if not blocked[y + ROW_STEP[d], x + COLUMN_STEP[d]]:
+                        free |= 1 << d
+            round_once = free | free << 8
+            beside = (round_once >> 1) & (round_once >> 7)
+            moves[y, x] = free & (0b01010101 | beside)
+
+
+@njit(cache=True, inline="always")
+def estimate(rows: int, columns: int, euclidean: bool) -> int:
+    """h: the way over a free 8-connected grid, or the straight line."""
+    if euclidean:
+        return int(STRAIGHT * math.sqrt(rows * rows + columns * columns))
+    rows, columns = abs(rows), abs(columns)
+    return STRAIGHT * max(rows, columns) + (DIAGONAL - STRAIGHT) * min(rows, columns)
+
+
+@njit(cache=True, inline="always")
+def occupied_in(sums: Ints, y: int, x: int, other_y: int, other_x: int) -> int:
+    """Occupied cells in the rectangle that two cells (padded coordinates) span."""
+    top, bottom = min(y, other_y) - 1, max(y, other_y)
+    left, right = min(x, other_x) - 1, max(x, other_x)
+    return sums[bottom, right] - sums[top, right] - sums[bottom, left] + sums[top, left]
+
+
+@njit(cache=True)
+def h_adaptive(
+    terms: Terms, sums: Ints, n: tuple[int, int], parent: tuple[int, int],
+    start: tuple[int, int], goal: tuple[int, int],
+) -> float:  # fmt: skip
+    """h_A(n) of Eq. 2, not below 0; cells are (y, x) in padded coordinates."""
+    y, x = n
+    to_goal_y, to_goal_x = goal[0] - y, goal[1] - x
+    value = float(estimate(to_goal_y, to_goal_x, terms.euclidean))
+    if terms.parent:
+        value += estimate(goal[0] - parent[0], goal[1] - parent[1], terms.euclidean)
+    if terms.k != 0.0:
+        from_start_y, from_start_x = y - start[0], x - start[1]
+        norms = math.sqrt(
+            float(from_start_y * from_start_y + from_start_x * from_start_x)
+            * float(to_goal_y * to_goal_y + to_goal_x * to_goal_x)
+        )
+        if norms > 0.0:
+            dot = from_start_y * to_goal_y + from_start_x * to_goal_x
+            value -= terms.k * dot / norms
+        else:
+            value -= abs(terms.k)
+    if terms.exponential:
+        if terms.around > 0:
+            a, rows, columns = terms.around, sums.shape[0] - 1, sums.shape[1] - 1
+            p = occupied_in(
+                sums, max(y - a, 1), max(x - a, 1), min(y + a, rows), min(x + a, columns)
+            )
+        else:
+            p = occupied_in(sums, y, x, goal[0], goal[1])
+        value *= math.exp(min(p / terms.q, 1.0))
+    return max(value, 0.0)
+
+
+@njit(cache=True, inline="always")
+def push(heap: Ints, size: int, key: int) -> None:
+    """Adds ``key`` to a binary heap of ``size`` keys."""
+    i = size
+    while i > 0:
+        above = (i - 1) >> 1
+        if heap[above] < key:
+            break
+        heap[i] = heap[above]
+        i = above
+    heap[i] = key
+
+
+@njit(cache=True, inline="always")
+def pop(heap: Ints, size: int) -> int:
+    """Takes the smallest key from a binary heap of ``size`` keys."""
+    smallest, last = heap[0], heap[size - 1]
+    hole, below = 0, 1
+    while below < size - 1:
+        below += heap[below + 1] < heap[below]
+        heap[hole] = heap[below]
+        hole, below = below, 2 * below + 1
+    push(heap, hole, last)
+    return smallest
+
+
+@njit(cache=True)
+def grown(array: Ints) -> Ints:
+    """The same array with twice the room."""
+    larger = np.empty(2 * array.size, array.dtype)
+    larger[: array.size] = array
+    return larger
+
+
+@njit(cache=True)
+def search(
+    moves: Bytes, sums: Ints, width: int, state: Ints, stamp: int,
+    start: int, goal: int, terms: Terms, heap: Ints, nodes: npt.NDArray[np.int32],
+) -> tuple[bool, int, Ints, npt.NDArray[np.int32]]:  # fmt: skip
+    """Expands from ``start`` until ``goal`` (-1: everything) is closed; the ways stay in ``state``.
+
+    Returns whether the goal was found, how many nodes were expanded, and the two work arrays
+    ``heap`` and ``nodes`` (nodes[serial number] is the node of an entry), which may have grown.
+    """
+    steps = ROW_STEP * width + COLUMN_STEP
+    tag = stamp << STAMP_SHIFT
+    start_cell = (start // width, start % width)
+    goal_cell = (goal // width, goal % width)
+    state[start] = tag | NO_DIRECTION << DIRECTION_SHIFT
+    nodes[0] = start
+    heap[0] = SERIAL_BITS
+    size, serial, expanded = 1, 1, 0
+    while size > 0:
+        node = np.int64(nodes[SERIAL_BITS - (pop(heap, size) & SERIAL_BITS)])
+        size -= 1
+        known = state[node]
+        if known & 1:
+            continue
+        state[node] = known | 1
+        expanded += 1
+        if node == goal:
+            return True, expanded, heap, nodes
+        if size + 8 > heap.size:
+            heap = grown(heap)
+        if serial + 8 > nodes.size:
+            nodes = grown(nodes)
+        g = known >> G_SHIFT
+        y = node // width
+        x = node - y * width
+        legal = moves[node]
+        for d in range(8):
+            if not (legal >> d) & 1:
+                continue
+            neighbour = node + steps[d]
+            g_new = g + (DIAGONAL if d & 1 else STRAIGHT)
+            there = state[neighbour]
+            if (there & STAMP_BITS) == tag and ((there & 1) or (there >> G_SHIFT) <= g_new):
+                continue
+            state[neighbour] = g_new << G_SHIFT | tag | d << DIRECTION_SHIFT
+            n = (y + ROW_STEP[d], x + COLUMN_STEP[d])
+            if terms.adaptive:
+                h = h_adaptive(terms, sums, n, (y, x), start_cell, goal_cell)
+            else:
+                h = float(estimate(goal_cell[0] - n[0], goal_cell[1] - n[1], terms.euclidean))
+            f = min(g_new + np.int64(terms.weight * h), MAX_F)
+            nodes[serial] = neighbour
+            push(heap, size, f << F_SHIFT | (SERIAL_BITS - serial))
+            size += 1
+            serial += 1
+    return False, expanded, heap, nodes
+
+
+@njit(cache=True)
+def trace(state: Ints, width: int, goal: int) -> npt.NDArray[np.int32]:
+    """The way (n, 2) that the last search found to ``goal``, in unpadded (row, column)."""
+    steps = ROW_STEP * width + COLUMN_STEP
+    count, node = 1, goal
+    while (state[node] >> DIRECTION_SHIFT) & 15 != NO_DIRECTION:
+        node -= steps[(state[node] >> DIRECTION_SHIFT) & 15]
+        count += 1
+    cells = np.empty((count, 2), np.int32)
+    node = goal
+    for i in range(count - 1, -1, -1):
+        cells[i, 0] = node // width - 1
+        cells[i, 1] = node % width - 1
+        if i > 0:
+            node -= steps[(state[node] >> DIRECTION_SHIFT) & 15]
+    return cells

@@ -1,0 +1,53 @@
+"""Laser scans: what a lidar says, and which points that means."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.geometry import Pose2D
+
+
+@dataclass(frozen=True, eq=False)
+class LaserScan:
+    """One turn of a planar lidar, as sensor_msgs/LaserScan has it, with the pose of its mount.
+
+    ``ranges`` (n,) metres: beam i points at ``angle_min + i * angle_increment`` in the sensor's
+    frame. +inf is "nothing up to range_max"; NaN, -inf, 0 and readings below range_min say nothing.
+    ``mount`` is the sensor's pose on the robot; ``stamp`` the time in seconds of the whole scan.
+    """
+
+    stamp: float
+    ranges: npt.NDArray[np.float32]
+    angle_min: float
+    angle_increment: float
+    range_min: float
+    range_max: float
+    mount: Pose2D = Pose2D(0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        ranges = np.array(self.ranges, dtype=np.float32).reshape(-1)
+        ranges.flags.writeable = False
+        object.__setattr__(self, "ranges", ranges)
+
+    @property
+    def angles(self) -> npt.NDArray[np.float64]:
+        """Direction of every beam in the sensor's frame, rad."""
+        return self.angle_min + self.angle_increment * np.arange(len(self.ranges))
+
+    def fault(self, beams: int | None = None) -> str | None:
+        """What makes this scan unusable, in words, or None; ``beams`` is the number expected."""
+        n = len(self.ranges)
+        if n == 0:
+            return "the scan has no beams"
+        if beams is not None and n != beams:
+            return f"the scan has {n} beams: expected {beams}"
+        numbers = (self.stamp, self.angle_min, self.angle_increment, *self.mount)
+        if not all(map(math.isfinite, numbers)):
+            return "the scan's stamp, angles or mount are not finite"
+        if self.angle_increment == 0.0 or abs(self.angle_increment) * (n - 1) > math.tau + 1e-3:
+            return f"the scan's {n} beams at {self.angle_increment:g} rad do not fit in a circle"
+        if not (0.0 <= self.range_min < self.range_max < math.inf):
+            return f"the scan's ranges run from {self.range_min:g} to {self.range_max:g} m"
+        return None

@@ -1,0 +1,7 @@
+"""Simulation: a true world, what is sensed of it, and missions run in it."""
+
+from dynastar.simulation.run import Controller, run
+from dynastar.simulation.scenario import Mover, Noise, Scenario
+from dynastar.simulation.world import World
+
+__all__ = ["Controller", "Mover", "Noise", "Scenario", "World", "run"]

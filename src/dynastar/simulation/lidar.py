@@ -1,0 +1,86 @@
+"""The simulated lidar: what a scan of the true world says."""
+
+import math
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.geometry import Pose2D, compose
+from dynastar.grid import OccupancyGrid
+from dynastar.robot import Lidar
+from dynastar.scan import LaserScan
+from dynastar.simulation import lidar_kernels as kernels
+from dynastar.simulation.noise import cut_gaussian
+
+Floats = npt.NDArray[np.float64]
+
+NO_DISCS = np.empty((0, 3))
+
+
+class LidarSimulator:
+    """Casts a lidar's beams, all at one moment, against a map, polygons and discs.
+
+    The map's occupied cells are solid and so is its border; unknown cells are not. ``obstacles``
+    are polygons (k, 2) in metres. Errors of up to ``range_bound`` metres come from ``random``.
+    """
+
+    def __init__(
+        self,
+        lidar: Lidar,
+        grid: OccupancyGrid,
+        obstacles: Sequence[Floats] = (),
+        range_bound: float = 0.0,
+        random: np.random.Generator | None = None,
+    ) -> None:
+        self.lidar = lidar
+        self._free = free_cells(grid)
+        self._frame = tuple(map(float, grid.frame))
+        edges = [np.hstack([ring, np.roll(ring, -1, axis=0)]) for ring in obstacles]
+        self._edges = np.concatenate([np.empty((0, 4)), *edges])
+        self._range_bound = range_bound
+        self._random = random or np.random.default_rng(0)
+
+    def scan(self, pose: Pose2D, stamp: float, discs: Floats = NO_DISCS) -> LaserScan:
+        """What the lidar of a robot at ``pose`` reads; ``discs`` (m, 3) are x, y, radius in metres.
+
+        +inf is nothing within range_max; readings below range_min are given as they are.
+        """
+        lidar = self.lidar
+        sensor = compose(pose, lidar.mount)
+        full = lidar.fov > math.tau - 1e-6
+        angle_min = -math.pi if full else -0.5 * lidar.increment * (lidar.beams - 1)
+        ranges = np.empty(lidar.beams)
+        kernels.cast(
+            self._free,
+            self._frame,
+            self._edges,
+            discs,
+            (sensor.x, sensor.y, sensor.theta + angle_min),
+            lidar.increment,
+            lidar.range_max,
+            ranges,
+        )
+        if self._range_bound > 0.0:
+            error = cut_gaussian(self._random, self._range_bound, lidar.beams)
+            seen = np.isfinite(ranges)
+            ranges[seen] = np.clip(ranges[seen] + error[seen], 0.0, lidar.range_max)
+        return LaserScan(
+            stamp,
+            ranges.astype(np.float32),
+            angle_min,
+            lidar.increment,
+            lidar.range_min,
+            lidar.range_max,
+            lidar.mount,
+        )
+
+
+def free_cells(grid: OccupancyGrid) -> npt.NDArray[np.int32]:
+    """Chessboard distance in cells to the nearest solid one, [rows + 2, columns + 2].
+
+    It is 0 in occupied cells and in the outermost ring, which stands for the border.
+    """
+    free = np.pad(~grid.occupied, 1).astype(np.uint8)
+    return np.ascontiguousarray(cv2.distanceTransform(free, cv2.DIST_C, 3), dtype=np.int32)

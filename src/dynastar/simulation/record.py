@@ -1,0 +1,126 @@
+"""Writing down a run as it happens."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.episode import Episode, EventRecord, PlanRecord
+from dynastar.geometry import Twist
+from dynastar.path import Trajectory
+from dynastar.simulation.scenario import Scenario
+from dynastar.simulation.world import World
+
+Floats = npt.NDArray[np.float64]
+
+NOTHING_EXPLORED = np.empty((0, 2), dtype=np.int32)
+
+
+class Recorder:
+    """Gathers what an Episode holds, tick by tick."""
+
+    def __init__(self, scenario: Scenario, world: World) -> None:
+        self._scenario, self._world = scenario, world
+        self._rows: list[tuple[float, ...]] = []
+        self._states: list[str] = []
+        self._movers: list[Floats] = []
+        self._plans: list[PlanRecord] = []
+        self._events: list[EventRecord] = []
+        self._plan_id: int | None = None
+        self._recoveries = 0
+        self._frame = scenario.grid.frame
+
+    def tick(self, command: Twist, command_ms: float, status: Any) -> None:
+        """One call of ``command``: its answer, the time it took, and the status after it."""
+        state = str(status.state)
+        if not self._states or state != self._states[-1]:
+            self.event("state", f"{state}: {status.reason}" if status.reason else state)
+        for _ in range(status.recoveries - self._recoveries):
+            self.event("recovery", str(status.reason))
+        self._recoveries = status.recoveries
+        if status.plan is not None and status.plan_id != self._plan_id:
+            self._plan_id, self._frame = status.plan_id, status.planning_frame
+            explored = status.plan.explored
+            self._plans.append(
+                PlanRecord(
+                    self._world.time,
+                    str(status.plan_reason),
+                    np.array(status.plan.path.points, dtype=np.float64),
+                    NOTHING_EXPLORED if explored is None else np.array(explored, np.int32),
+                )
+            )
+        self._row(command, command_ms, state)
+
+    def contact(self, command: Twist, detail: str) -> None:
+        """The moment of a contact; after the first tick, no call of ``command`` belongs to it."""
+        self.event("contact", detail)
+        if self._world.time > self._rows[-1][0]:
+            self._row(command, math.nan, self._states[-1])
+
+    def event(self, kind: str, detail: str) -> None:
+        """Something that happened now."""
+        self._events.append(EventRecord(self._world.time, kind, detail))
+
+    def _row(self, command: Twist, command_ms: float, state: str) -> None:
+        world = self._world
+        self._rows.append(
+            (world.time, *world.pose, *world.twist, *command, world.clearance, command_ms)
+        )
+        self._states.append(state)
+        self._movers.append(world.movers)
+
+    def episode(self, outcome: str, reason: str, config: Any, seed: int) -> Episode:
+        """All of it; ``config`` is the effective one, a NamedTuple."""
+        scenario, table = self._scenario, np.array(self._rows, dtype=np.float64).reshape(-1, 10)
+        footprint = scenario.robot.footprint
+        goals = [(g.x, g.y, math.nan if g.heading is None else g.heading) for g in scenario.goals]
+        frame = self._frame
+        return Episode(
+            grid=scenario.grid,
+            robot=scenario.robot.name,
+            radius=footprint.circumscribed,
+            footprint=footprint.vertices,
+            goals=np.array(goals, dtype=np.float64).reshape(-1, 3),
+            goal_tolerance=float(config.goal_tolerance),
+            trajectory=Trajectory(table[:, 0], table[:, 1:4], table[:, 4:6]),
+            commands=table[:, 6:8],
+            clearance=table[:, 8],
+            command_ms=table[:, 9],
+            states=np.array(self._states, dtype=np.str_),
+            movers=np.array(self._movers).reshape(len(self._rows), -1, 2),
+            mover_radii=np.array([mover.radius for mover in scenario.movers], dtype=np.float64),
+            obstacles=tuple(np.asarray(ring, dtype=np.float64) for ring in scenario.obstacles),
+            plans=tuple(self._plans),
+            events=tuple(self._events),
+            outcome=outcome,
+            reason=reason,
+            contact=self._world.contact,
+            explored_frame=(frame.resolution, frame.x, frame.y, frame.yaw),
+            config=plain(config),
+            scenario=described(scenario, seed),
+        )
+
+
+def plain(value: Any) -> Any:
+    """Nested NamedTuples, mappings, sequences and arrays as dicts, lists and plain numbers."""
+    if hasattr(value, "_asdict"):
+        value = value._asdict()
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    return [plain(item) for item in value] if isinstance(value, list | tuple) else value
+
+
+def described(scenario: Scenario, seed: int) -> dict[str, Any]:
+    """The scenario as plain data, maps and polygons aside, with the seed it was run with.
+
+    Movers' keys are left out where ``source`` says what the scenario was read from.
+    """
+    names = ("name", "start", "goals", "noise", "latency", "goal_tolerance", "heading_tolerance")
+    more = ("time_limit", "unknown", "preset", "navigator", "source")
+    movers = () if scenario.source else tuple(vars(mover) for mover in scenario.movers)
+    data = {name: plain(getattr(scenario, name)) for name in (*names, *more)}
+    return data | {"robot": scenario.robot.name, "seed": seed, "movers": plain(movers)}

@@ -1,0 +1,197 @@
+"""Running a mission: the world, the navigator in it, and how it ends (section V)."""
+
+import math
+import sys
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from time import perf_counter
+from typing import Any, Protocol
+
+from tqdm import tqdm
+
+from dynastar.episode import Episode
+from dynastar.errors import InputError, PlanningError, ScenarioError
+from dynastar.geometry import Pose2D, Twist
+from dynastar.robot import stopping_time
+from dynastar.simulation.record import Recorder
+from dynastar.simulation.scenario import Scenario
+from dynastar.simulation.world import World
+
+SENSOR_LOST = 5.0  # s without usable data until a mission is given up
+GRACE = 5.0  # s to come to rest after the last word, on top of the stopping time
+
+
+class Controller(Protocol):
+    """What drives a robot here: ``dynastar.Navigator``, or anything that is called the same way.
+
+    ``status`` needs ``state``, ``reason``, ``recoveries``, ``plan``, ``plan_id``, ``plan_reason``,
+    ``planning_frame`` and ``error`` as the Navigator's has them; ``plan`` may stay None.
+    """
+
+    @property
+    def status(self) -> Any:
+        """State, reason and plan after the last command."""
+
+    def set_goal(self, goal: Any) -> Any:
+        """Takes the goals, in order."""
+
+    def command(self, state: Any, scan: Any) -> Twist:
+        """The twist to drive, given a RobotState and a LaserScan."""
+
+
+def run(
+    scenario: Scenario,
+    progress: bool = False,
+    seed: int | None = None,
+    *,
+    navigator: Callable[..., Controller] | None = None,
+) -> Episode:
+    """Runs a mission from its start to its end and returns the record of it.
+
+    ``progress`` shows a bar on stderr, in simulated seconds. ``seed`` replaces the scenario's.
+    ``navigator`` is called as ``navigator(grid, robot, config)`` for what drives, by default
+    ``dynastar.Navigator``. But for ``command_ms``, a seed gives the same Episode every time.
+
+    Raises ConfigError and ScenarioError for settings and scenarios that cannot be, and
+    StartOccupied, GoalOccupied or OutOfMap for a start or goal that the navigator cannot take.
+    """
+    from dynastar.navigator import Navigator, RobotState
+
+    if not scenario.goals:
+        raise ScenarioError(f"the scenario '{scenario.name}' has no goal: expected one or more")
+    if not all(math.isfinite(number or 0.0) for number in scenario.start):
+        raise ScenarioError(f"the start is {scenario.start}: expected finite numbers")
+    seed = scenario.seed if seed is None else seed
+    config = effective_config(scenario)
+    world = World(scenario, start_pose(scenario), seed)
+    controller = (navigator or Navigator)(scenario.grid, scenario.robot, config)
+    controller.set_goal(scenario.goals)
+    recorder, referee = Recorder(scenario, world), Referee(scenario, config)
+    ending, ticks = None, 0
+    with tqdm(
+        total=scenario.time_limit,
+        desc=scenario.name,
+        unit="s",
+        file=sys.stderr,
+        disable=not progress,
+        bar_format="{desc}: {n:.1f} of at most {total:.0f} simulated s [{elapsed}]",
+    ) as bar:
+        while ending is None:
+            state = RobotState(world.time, world.sensed_pose(), world.twist)
+            scan = world.scan()
+            began = perf_counter()
+            command = Twist(*controller.command(state, scan))
+            command_ms = 1e3 * (perf_counter() - began)
+            status = controller.status
+            if world.time == 0.0 and isinstance(status.error, InputError):
+                raise status.error
+            recorder.tick(command, command_ms, status)
+            ending = referee.ended(world, status)
+            if ending is None:
+                ticks += 1
+                world.step(command, ticks * config.period - world.time)
+                bar.update(config.period)
+                ending = referee.touched(world)
+    outcome, reason = ending
+    if outcome == "contact":
+        recorder.contact(command, reason)
+    return recorder.episode(outcome, reason, config, seed)
+
+
+def effective_config(scenario: Scenario) -> Any:
+    """The NavigatorConfig of a mission: the preset, the scenario's fields, its own overrides.
+
+    The declared error bounds are at least those of the scenario's noise. Raises ConfigError.
+    """
+    from dynastar.navigator import configured
+
+    noise = scenario.noise
+    overrides: Mapping[str, Any] = {
+        "latency": scenario.latency,
+        "goal_tolerance": scenario.goal_tolerance,
+        "heading_tolerance": scenario.heading_tolerance,
+        "unknown": scenario.unknown,
+        **scenario.navigator,
+    }
+    config = configured(scenario.preset, overrides)
+    bounds = {
+        "range_error": max(config.range_error, noise.range_bound),
+        "pose_error": max(config.pose_error, math.hypot(noise.pose_bound, noise.pose_bound)),
+        "heading_error": max(config.heading_error, noise.heading_bound),
+    }
+    return configured(scenario.preset, {**overrides, **bounds})
+
+
+def start_pose(scenario: Scenario) -> Pose2D:
+    """Where the robot stands at first: without a heading, it faces the first leg of a plan.
+
+    Where nothing can be planned, it faces the goal.
+    """
+    from dynastar.planning import plan
+
+    x, y, heading = scenario.start
+    if heading is not None:
+        return Pose2D(x, y, heading)
+    goal = scenario.goals[0]
+    towards, radius = (goal.x, goal.y), scenario.robot.footprint.circumscribed
+    with suppress(PlanningError):
+        path = plan(scenario.grid, (x, y), towards, radius=radius, unknown=scenario.unknown).path
+        onward = path.points[path.arc > 1e-6]
+        if len(onward):
+            towards = (float(onward[0, 0]), float(onward[0, 1]))
+    return Pose2D(x, y, math.atan2(towards[1] - y, towards[0] - x))
+
+
+class Referee:
+    """Decides when a mission is over, and what it came to, by the truth."""
+
+    def __init__(self, scenario: Scenario, config: Any) -> None:
+        self._goal, self._limit = scenario.goals[-1], scenario.time_limit
+        bound = scenario.noise.pose_bound
+        self._tolerance = config.goal_tolerance + math.hypot(bound, bound) + 1e-6
+        self._grace = GRACE + scenario.latency
+        self._limits = scenario.robot.limits
+        self._final = ""
+        self._until = math.inf
+        self._nearest = math.inf
+        self._lost_since: float | None = None
+
+    def touched(self, world: World) -> tuple[str, str] | None:
+        """("contact", reason) once the robot has touched something."""
+        if not world.contact:
+            return None
+        how = "while moving" if world.contact == "moving" else "at rest"
+        x, y, _ = world.pose
+        return "contact", f"touched something {how} at ({x:.2f}, {y:.2f}), {world.time:.2f} s"
+
+    def ended(self, world: World, status: Any) -> tuple[str, str] | None:
+        """(outcome, reason) once the mission is over, seen after each command."""
+        if world.contact:
+            return self.touched(world)
+        state, reason = str(status.state), str(status.reason)
+        if state in ("arrived", "blocked"):
+            return self._last_word(world, state, reason)
+        if state != "sensor_lost":
+            self._lost_since = None
+        elif self._lost_since is None:
+            self._lost_since = world.time
+        elif world.time - self._lost_since > SENSOR_LOST and world.resting:
+            return "sensor_lost", reason
+        if world.time >= self._limit - 1e-9:
+            return "timeout", f"not there after {self._limit:g} s; {state}: {reason}"
+        return None
+
+    def _last_word(self, world: World, state: str, reason: str) -> tuple[str, str] | None:
+        """The navigator has finished: the robot is let come to rest, and the word is checked."""
+        if state != self._final:
+            self._final, self._nearest = state, math.inf
+            self._until = world.time + self._grace + stopping_time(world.twist, self._limits)
+        gap = math.hypot(self._goal.x - world.pose.x, self._goal.y - world.pose.y)
+        self._nearest = min(self._nearest, gap)
+        if not world.resting:
+            if world.time < self._until:
+                return None
+            return "timeout", f"said '{state}' and did not come to rest in {self._grace:g} s more"
+        if state == "arrived" and self._nearest > self._tolerance:
+            return "blocked", f"said 'arrived' {gap:.2f} m away from the goal"
+        return state, reason

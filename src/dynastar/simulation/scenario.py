@@ -1,0 +1,68 @@
+"""A scenario: everything that a run depends on, as plain data."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Annotated, Any, Literal, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.config import Field
+from dynastar.geometry import Goal
+from dynastar.grid import OccupancyGrid, Unknown
+from dynastar.robot import Robot
+
+Floats = npt.NDArray[np.float64]
+AfterLast = Literal["loop", "back_and_forth", "stay", "vanish"]
+
+
+class Noise(NamedTuple):
+    """Errors of the simulated senses: Gaussian with half the bound as deviation, cut at the bound."""
+
+    range_bound: Annotated[float, Field("largest error of a range", "m", 0.0, 1.0)] = 0.0
+    pose_bound: Annotated[float, Field("largest error of x and of y", "m", 0.0, 1.0)] = 0.0
+    heading_bound: Annotated[float, Field("largest error of the heading", "rad", 0.0, 0.5)] = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Mover:
+    """A disc that follows keyframes and reacts to nobody.
+
+    ``times`` (k,) s rising, ``points`` (k, 2) m, linear between. After the last key it starts over
+    ("loop": from the first key, jumping there), goes back the way it came ("back_and_forth"),
+    stands ("stay") or is gone ("vanish", then also absent before the first key).
+    """
+
+    radius: float
+    times: Floats
+    points: Floats
+    after: AfterLast = "back_and_forth"
+
+
+@dataclass(frozen=True, eq=False)
+class Scenario:
+    """A mission in a world; ``grid`` is what the robot knows, ``world`` what is true (None: the same).
+
+    ``start`` is (x, y, heading), heading None for "towards the first point of the path".
+    ``obstacles`` are simple polygons (k, 2) in metres that no map has. ``navigator`` overrides
+    settings of the preset, as nested tables. ``source`` is what the scenario was read from.
+    """
+
+    name: str
+    grid: OccupancyGrid
+    robot: Robot
+    start: tuple[float, float, float | None]
+    goals: tuple[Goal, ...]
+    world: OccupancyGrid | None = None
+    obstacles: tuple[Floats, ...] = ()
+    movers: tuple[Mover, ...] = ()
+    noise: Noise = Noise()
+    latency: float = 0.0
+    goal_tolerance: float = 0.25
+    heading_tolerance: float = 0.1
+    time_limit: float = 300.0
+    unknown: Unknown = "blocked"
+    seed: int = 0
+    preset: Literal["default", "paper"] = "default"
+    navigator: Mapping[str, Any] = field(default_factory=dict)
+    source: Mapping[str, Any] = field(default_factory=dict)

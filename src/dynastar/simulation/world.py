@@ -1,0 +1,151 @@
+"""The true world: the robot as it really moves, and what it really touches (Eq. 4, section V)."""
+
+import math
+from collections import deque
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.errors import InputError, ScenarioError
+from dynastar.geometry import Pose2D, Twist, wrap_angle
+from dynastar.robot import Limits, arc, slew
+from dynastar.scan import LaserScan
+from dynastar.simulation.contact import Solids
+from dynastar.simulation.lidar import LidarSimulator
+from dynastar.simulation.movers import Movers
+from dynastar.simulation.noise import cut_gaussian
+from dynastar.simulation.scenario import Scenario
+
+Floats = npt.NDArray[np.float64]
+Contact = Literal["", "moving", "resting"]
+
+SUBSTEP = 0.01  # s, the longest stretch driven at one twist
+REST = 1e-4  # m/s and rad/s under which the robot stands
+RESTING = 0.02  # m/s and rad/s under which a contact happens at rest
+
+
+class World:
+    """What is true of the robot: ``time`` (s), ``pose``, ``twist``, ``clearance`` (m), ``contact``.
+
+    The drive ramps both speeds, each on its own, towards the command that was given at least
+    ``scenario.latency`` ago. ``clearance`` is the smallest gap between footprint and anything since
+    the last ``step`` began; ``contact`` says what a touch was, and the world then stands still.
+    Raises ScenarioError for obstacles, movers or a seed that no world can be made of.
+    """
+
+    def __init__(self, scenario: Scenario, start: Pose2D, seed: int | None = None) -> None:
+        seed = scenario.seed if seed is None else seed
+        if seed < 0:
+            raise ScenarioError(f"the seed is {seed}: expected 0 or more")
+        grid = scenario.grid if scenario.world is None else scenario.world
+        senses = np.random.SeedSequence(seed).spawn(2)
+        self._scenario, self._robot = scenario, scenario.robot
+        self._solids = Solids(grid, scenario.obstacles)
+        self._movers = Movers(scenario.movers)
+        self._lidar = LidarSimulator(
+            scenario.robot.lidar,
+            grid,
+            scenario.obstacles,
+            scenario.noise.range_bound,
+            np.random.default_rng(senses[0]),
+        )
+        self._pose_random = np.random.default_rng(senses[1])
+        self._commands: deque[tuple[float, Twist]] = deque()
+        self._wanted = Twist(0.0, 0.0)
+        self.time, self.pose, self.twist = 0.0, start, Twist(0.0, 0.0)
+        self.contact: Contact = ""
+        self._solid_gap, self._travelled = 0.0, 0.0
+        self.clearance = math.inf
+        self._look(Twist(0.0, 0.0), thoroughly=True)
+
+    @property
+    def resting(self) -> bool:
+        """Whether the robot stands and nothing it was told will move it."""
+        told = (self._wanted, *(command for _, command in self._commands))
+        return all(abs(speed) < REST for twist in (self.twist, *told) for speed in twist)
+
+    @property
+    def movers(self) -> Floats:
+        """Where the movers are now, (m, 2) metres, NaN for those that are not there."""
+        return self._movers.at(self.time)
+
+    def scan(self) -> LaserScan:
+        """What the lidar reads now."""
+        discs = np.column_stack([self.movers, self._movers.radii])
+        return self._lidar.scan(self.pose, self.time, discs)
+
+    def sensed_pose(self) -> Pose2D:
+        """The pose as the robot's localisation tells it now, errors included."""
+        noise = self._scenario.noise
+        error = cut_gaussian(self._pose_random, 1.0, 3)
+        return Pose2D(
+            self.pose.x + noise.pose_bound * error[0],
+            self.pose.y + noise.pose_bound * error[1],
+            wrap_angle(self.pose.theta + noise.heading_bound * error[2]),
+        )
+
+    def step(self, command: Twist, duration: float) -> None:
+        """Takes in ``command`` and lets ``duration`` seconds pass, or less where a contact ends it.
+
+        Raises InputError for a command that is not finite.
+        """
+        if not all(map(math.isfinite, command)):
+            raise InputError(f"the command at {self.time:g} s is {command}: expected finite speeds")
+        if self.contact:
+            return
+        end = self.time + duration
+        self._commands.append((self.time + self._scenario.latency, saturated(command, self.limits)))
+        self.clearance = math.inf
+        while self.time < end and not self.contact:
+            while self._commands and self._commands[0][0] <= self.time:
+                self._wanted = self._commands.popleft()[1]
+            until = min(end, self._commands[0][0]) if self._commands else end
+            substeps = math.ceil((until - self.time) / SUBSTEP - 1e-6)
+            if substeps > 1:
+                until = self.time + (until - self.time) / substeps
+            self._look(self._drive(until), thoroughly=self.time >= end)
+
+    @property
+    def limits(self) -> Limits:
+        """What the drive can do."""
+        return self._robot.limits
+
+    def _drive(self, until: float) -> Twist:
+        """Moves along one exact arc at the mean of the speeds before and after, and returns it."""
+        limits, before, duration = self.limits, self.twist, until - self.time
+        wanted = self._wanted
+        self.twist = Twist(
+            slew(before.v, wanted.v, limits.v_accel, limits.v_brake, duration),
+            slew(before.omega, wanted.omega, limits.omega_accel, limits.omega_brake, duration),
+        )
+        mean = Twist(0.5 * (before.v + self.twist.v), 0.5 * (before.omega + self.twist.omega))
+        self.pose = arc(self.pose, mean, duration)
+        self.time = until
+        reach = self._robot.footprint.circumscribed
+        self._travelled += duration * (abs(mean.v) + reach * abs(mean.omega))
+        return mean
+
+    def _look(self, twist: Twist, thoroughly: bool) -> None:
+        """Checks for contact: movers always, what stands once half the way to it may be used up.
+
+        No point of the footprint has moved further than ``_travelled`` since the last check.
+        """
+        footprint = self._robot.footprint
+        if thoroughly or self._travelled >= 0.5 * self._solid_gap:
+            self._solid_gap = self._solids.gap(self.pose, footprint)
+            self._travelled = 0.0
+            self.clearance = min(self.clearance, self._solid_gap)
+        gap = self._movers.gap(self.time, self.pose, footprint)
+        self.clearance = max(0.0, min(self.clearance, gap))
+        if self.clearance <= 0.0:
+            at_rest = abs(twist.v) < RESTING and abs(twist.omega) < RESTING
+            self.contact = "resting" if at_rest else "moving"
+
+
+def saturated(command: Twist, limits: Limits) -> Twist:
+    """The command that the drive can follow."""
+    return Twist(
+        min(max(command.v, limits.v_min), limits.v_max),
+        min(max(command.omega, -limits.omega_max), limits.omega_max),
+    )

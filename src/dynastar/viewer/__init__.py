@@ -1,0 +1,1 @@
+"""Pictures of plans and missions: ``figure`` for print, ``animation`` for watching."""

@@ -1,0 +1,227 @@
+"""The layers of a picture, each drawn into an Axes in metres; each returns its legend entries."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PatchCollection, PolyCollection
+from matplotlib.colors import Normalize, to_rgb
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, Patch
+from matplotlib.patheffects import withStroke
+from matplotlib.transforms import Affine2D
+
+from dynastar.episode import Episode, PlanRecord
+from dynastar.grid import GridFrame, OccupancyGrid
+from dynastar.viewer import palette, scene
+from dynastar.viewer.scene import View
+
+Floats = npt.NDArray[np.float64]
+
+FOOTPRINTS = 24  # about how many are drawn along the way
+NICE_SECONDS = (0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600)
+HALO = [withStroke(linewidth=2.2, foreground="white")]
+
+
+def _place_image(axes: Axes, image: npt.NDArray[np.uint8], frame: GridFrame, box: Floats) -> None:
+    """Shows ``image`` over the cells ``box`` (row, column, row end, column end) of ``frame``."""
+    row, column, row_end, column_end = box
+    shown = axes.imshow(image, origin="lower", extent=(column, column_end, row, row_end), zorder=0)
+    to_metres = Affine2D().scale(frame.resolution).rotate(frame.yaw).translate(frame.x, frame.y)
+    shown.set_transform(to_metres + axes.transData)
+
+
+def show_map(axes: Axes, grid: OccupancyGrid, view: View) -> list[Artist]:
+    """The map; what lies outside of it looks as unknown as it is."""
+    axes.set_facecolor(palette.UNKNOWN)
+    window = scene.map_image(grid, view)
+    if window.rgb.size:
+        _place_image(axes, window.rgb, grid.frame, np.array(window[1:], dtype=float))
+    axes.set(xlim=(view.x_low, view.x_high), ylim=(view.y_low, view.y_high), aspect="equal")
+    entries: list[Artist] = [Patch(facecolor=palette.OCCUPIED, label="mapped obstacle")]
+    if grid.unknown.any():
+        entries.append(_patch(palette.UNKNOWN, "unknown"))
+    if grid.keepout is not None:
+        entries.append(_patch(palette.KEEPOUT, "keep out"))
+    if grid.speed_limit is not None:
+        entries.append(_patch(palette.SLOW, "speed limit"))
+    return entries
+
+
+def show_explored(
+    axes: Axes, cells: npt.NDArray[np.integer], frame: GridFrame, label: str
+) -> list[Artist]:
+    """A tint over explored ``cells`` (m, 2), (row, column) in ``frame``."""
+    if len(cells) == 0:
+        return []
+    low, high = cells.min(axis=0), cells.max(axis=0) + 1
+    image = np.zeros((*(high - low), 4), dtype=np.uint8)
+    rows, columns = (cells - low).T
+    image[:, :, :3] = [round(255 * part) for part in to_rgb(palette.EXPLORED)]
+    image[rows, columns, 3] = 255
+    image = scene.averaged_down(image, scene.LARGEST_IMAGE)
+    _place_image(axes, image, frame, np.array([*low, *high], dtype=float))
+    return [_patch(palette.EXPLORED, label)]
+
+
+def show_obstacles(axes: Axes, obstacles: Sequence[Floats]) -> list[Artist]:
+    """The polygons that the map does not have."""
+    if len(obstacles) == 0:
+        return []
+    style = {"facecolor": palette.OBSTACLE, "edgecolor": palette.OBSTACLE_EDGE, "linewidth": 0.8}
+    axes.add_collection(PolyCollection(list(obstacles), zorder=2, **style))
+    return [Patch(label="unmapped obstacle", **style)]
+
+
+def show_plans(axes: Axes, plans: Sequence[PlanRecord], view: View) -> list[Artist]:
+    """The global paths: the first dotted, later ones dashed, numbered where they begin."""
+    entries: list[Artist] = []
+    for index, plan in enumerate(plans):
+        if len(plan.points) == 0:
+            continue
+        if index == 0:
+            style = {"color": palette.FIRST_PATH, "linestyle": (0, (1, 1.2)), "linewidth": 1.6}
+            label = "global path"
+        else:
+            colour = palette.later_path(index - 1, len(plans) - 1)
+            style = {"color": colour, "linestyle": (0, (4, 1.5)), "linewidth": 1.4}
+            label = "global path after replanning"
+        axes.plot(*plan.points.T, zorder=4, **style)
+        if index in (0, 1):
+            entries.append(Line2D([], [], label=label, **style))
+    if len(plans) > 1:
+        for place, number in scene.plan_labels(plans, 0.02 * view.diagonal):
+            axes.annotate(
+                number,
+                place,
+                xytext=(-7, 8),
+                textcoords="offset points",
+                ha="center",
+                va="center",
+                fontsize=7,
+                color=palette.FIRST_PATH,
+                fontweight="bold",
+                path_effects=HALO,
+                zorder=9,
+                annotation_clip=True,
+            )
+    return entries
+
+
+def show_movers(axes: Axes, episode: Episode, view: View) -> list[Artist]:
+    """What moves: a disc where it was nearest to the robot, and its track in dots."""
+    driven = episode.trajectory
+    spacing = view.diagonal / 130.0
+    discs, dots = [], []
+    for mover, radius in enumerate(episode.mover_radii):
+        track = episode.movers[:, mover]
+        dots.append(scene.track_dots(track, driven.times, spacing))
+        tick = scene.closest_tick(track, driven.poses[:, :2])
+        if tick is not None:
+            discs.append(Circle(track[tick], radius))
+    if not discs:
+        return []
+    x, y = np.concatenate(dots).T
+    axes.plot(x, y, ".", color=palette.MOVER, markersize=2.6, markeredgewidth=0, zorder=3)
+    style = {"facecolor": palette.MOVER, "edgecolor": palette.MOVER_EDGE, "linewidth": 0.7}
+    axes.add_collection(PatchCollection(discs, zorder=7, **style))
+    disc = Line2D([], [], linestyle="none", marker="o", markersize=6)
+    disc.set(markerfacecolor=palette.MOVER, markeredgecolor=palette.MOVER_EDGE)
+    disc.set_label("mover where it came nearest")
+    track_entry = Line2D([], [], linestyle=(0, (1, 1.6)), color=palette.MOVER, linewidth=1.6)
+    track_entry.set_label("track of a mover")
+    return [disc, track_entry]
+
+
+def show_driven(axes: Axes, episode: Episode) -> tuple[LineCollection, list[Artist]]:
+    """The driven trajectory coloured by speed, with the footprint every few seconds."""
+    driven = episode.trajectory
+    points, speed = driven.poses[:, :2], np.abs(driven.twists[:, 0])
+    fastest = float(speed.max()) if len(speed) else 0.0
+    line = LineCollection(
+        list(np.stack([points[:-1], points[1:]], axis=1)),
+        cmap=palette.speed_colours(),
+        norm=Normalize(0.0, max(fastest, 0.1)),
+        linewidths=2.4,
+        capstyle="round",
+        zorder=5,
+    )
+    line.set_array(0.5 * (speed[:-1] + speed[1:]))
+    axes.add_collection(line)
+    if len(points) == 0:
+        return line, []
+    seconds = driven.times - driven.times[0]
+    step = next((s for s in NICE_SECONDS if seconds[-1] / s <= FOOTPRINTS), NICE_SECONDS[-1])
+    ticks = np.searchsorted(seconds, np.arange(step, seconds[-1], step))
+    shapes = [scene.outline(episode, driven.poses[tick]) for tick in ticks]
+    style = {"facecolor": "none", "edgecolor": palette.FAINT_INK, "linewidth": 0.5}
+    axes.add_collection(PolyCollection(shapes, zorder=6, **style))
+    for tick in (0, -1):
+        show_robot(axes, episode, driven.poses[tick])
+    entries: list[Artist] = [
+        Line2D([], [], color=palette.speed_colours()(0.7), linewidth=2.4, label="driven"),
+        _ring("none", palette.FAINT_INK, f"robot every {step:g} s"),
+    ]
+    return line, entries
+
+
+def show_robot(axes: Axes, episode: Episode, pose: Floats) -> None:
+    """The footprint at ``pose``, with a line from its centre to its front."""
+    shape = scene.outline(episode, pose)
+    axes.fill(*shape.T, facecolor="#ffffffd0", edgecolor=palette.ROBOT, linewidth=1.0, zorder=7)
+    axes.plot(*scene.nose(episode, pose).T, color=palette.ROBOT, linewidth=1.0, zorder=7)
+
+
+def show_goals(axes: Axes, episode: Episode) -> list[Artist]:
+    """S where the robot started, and G (G1, G2, ... if several) with the tolerance round it."""
+    goals = episode.goals[:, :2]
+    ring = {"facecolor": "none", "edgecolor": palette.INK, "linewidth": 0.9}
+    for number, goal in enumerate(goals, 1):
+        axes.add_patch(Circle(tuple(goal), episode.goal_tolerance, zorder=8, **ring))
+        axes.plot(*goal, "+", color=palette.INK, markersize=4, markeredgewidth=0.9, zorder=8)
+        mark(axes, goal, "G" if len(goals) == 1 else f"G{number}")
+    if len(episode.trajectory.poses):
+        mark(axes, episode.trajectory.poses[0, :2], "S")
+    return [_ring("none", palette.INK, "goal and its tolerance")]
+
+
+def show_contact(axes: Axes, episode: Episode) -> list[Artist]:
+    """A red cross where the robot was when it touched something."""
+    if not episode.contact or len(episode.trajectory.poses) == 0:
+        return []
+    cross = Line2D([], [], linestyle="none", marker="x", color=palette.CONTACT)
+    x, y = episode.trajectory.poses[-1, :2]
+    axes.plot(x, y, "x", color="white", markersize=12, markeredgewidth=4.5, zorder=10)
+    axes.plot(x, y, "x", color=palette.CONTACT, markersize=10, markeredgewidth=2.6, zorder=10)
+    cross.set(markersize=7, markeredgewidth=2.2, label=f"contact ({episode.contact})")
+    return [cross]
+
+
+def mark(axes: Axes, place: Floats, letters: str) -> None:
+    """Letters in a dark disc beside a place, tied to it by a line."""
+    axes.annotate(
+        letters,
+        tuple(place),
+        xytext=(11, 11),
+        textcoords="offset points",
+        ha="center",
+        va="center",
+        fontsize=8,
+        fontweight="bold",
+        color="white",
+        bbox={"boxstyle": "circle,pad=0.22", "facecolor": palette.INK, "edgecolor": "white"},
+        arrowprops={"arrowstyle": "-", "color": palette.INK, "linewidth": 0.9, "shrinkB": 1},
+        zorder=11,
+    )
+
+
+def _patch(colour: str, label: str) -> Patch:
+    return Patch(facecolor=colour, edgecolor=palette.FAINT_INK, linewidth=0.4, label=label)
+
+
+def _ring(face: str, edge: str, label: str) -> Line2D:
+    ring = Line2D([], [], linestyle="none", marker="o", markersize=6.5, label=label)
+    ring.set(markerfacecolor=face, markeredgecolor=edge, markeredgewidth=0.9)
+    return ring

@@ -1,0 +1,20 @@
+"""What all tests share: where the public data sets lie."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.fixture(scope="session")
+def data_dir() -> Path:
+    """The public data sets: $DYNASTAR_DATA, else ../shared/data beside the clone, else skip."""
+    named = os.environ.get("DYNASTAR_DATA")
+    folder = Path(named) if named else ROOT.parent / "shared" / "data"
+    if not folder.is_dir():
+        pytest.skip(
+            f"the public data sets are not in {folder}: set DYNASTAR_DATA to have them read"
+        )
+    return folder.resolve()

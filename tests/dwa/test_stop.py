@@ -1,0 +1,109 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from dynastar.clearance import distance_field
+from dynastar.dwa import stop_kernels
+from dynastar.dwa.clearance_kernels import centre_clearance, footprint_clearance
+from dynastar.robot import Footprint, Limits, box
+
+RESOLUTION, SIDE = 0.05, 80
+DISC, BOX = Footprint.disc(0.3), box(0.5, 0.4)
+LIMITS = Limits(1.5, 1.5, 1.0, 1.5, 1.0, 1.5, -0.5)
+NOBODY = np.empty((0, 5))
+
+
+def world(seed, share=0.01):
+    closed = np.random.default_rng(seed).random((SIDE, SIDE)) < share
+    closed[[0, -1]] = closed[:, [0, -1]] = True
+    closed[30:50, 30:50] = False
+    rows, columns = np.nonzero(closed)
+    centres = np.column_stack([(columns + 0.5) * RESOLUTION, (rows + 0.5) * RESOLUTION])
+    return distance_field(closed, RESOLUTION), centres
+
+
+def true_clearance(centres, footprint, x, y, theta):
+    """Distance from the footprint to the nearest closed cell's centre, the slow way."""
+    if footprint.is_disc:
+        return np.hypot(*(centres - (x, y)).T).min() - footprint.circumscribed
+    shapely = pytest.importorskip("shapely")
+    cos, sin = math.cos(theta), math.sin(theta)
+    corners = footprint.vertices @ np.array([[cos, sin], [-sin, cos]]) + (x, y)
+    return shapely.distance(shapely.Polygon(corners), shapely.points(centres)).min()
+
+
+@given(st.integers(0, 10**6), st.floats(1.2, 2.8), st.floats(1.2, 2.8), st.floats(-3, 3))
+@settings(max_examples=150, deadline=None)
+@pytest.mark.parametrize("footprint", [DISC, BOX], ids=["disc", "box"])
+def test_clearance_is_a_close_lower_bound(footprint, seed, x, y, theta):
+    field, centres = world(seed)
+    shape = footprint.vertices, footprint.inscribed, footprint.circumscribed
+    found = footprint_clearance(field, 0.0, 0.0, RESOLUTION, *shape, 0.3, x, y, theta)
+    truth = true_clearance(centres, footprint, x, y, theta)
+    if footprint.is_disc or truth > 0.0:
+        assert found <= truth + 1e-6
+    if footprint.is_disc or 0.0 < truth < 0.25:
+        assert found >= truth - 0.5 * RESOLUTION
+    else:
+        assert (found > 0.05) == (truth > 0.05) or truth > 0.2
+
+
+def test_clearance_off_the_window_is_none():
+    field, _ = world(1)
+    assert centre_clearance(field, 0.0, 0.0, RESOLUTION, -1.0, 2.0) == 0.0
+    assert centre_clearance(field, 0.0, 0.0, RESOLUTION, 2.0, 99.0) == 0.0
+
+
+@given(
+    st.integers(0, 10**6), st.floats(-3, 3), st.floats(-1.2, 1.2), st.floats(-2, 2),
+    st.sampled_from([DISC, BOX]),
+)
+@settings(max_examples=300, deadline=None)
+def test_a_clear_arc_is_clear_everywhere(seed, theta, length, angle, footprint):
+    field, centres = world(seed, 0.004)
+    shape = footprint.vertices, footprint.inscribed, footprint.circumscribed
+    margin = 0.05
+    clear = stop_kernels.arc_is_clear(
+        field, 0.0, 0.0, RESOLUTION, *shape, margin, 2.0, 2.0, theta, length, angle, 1.0
+    )
+    along = [
+        true_clearance(
+            centres, footprint,
+            *stop_kernels.arc(2.0, 2.0, theta, share * length, share * angle),
+        )
+        for share in np.linspace(0.0, 1.0, 60)
+    ]
+    if clear:
+        assert min(along) >= margin - 0.25 * RESOLUTION
+    else:
+        assert min(along) <= margin + RESOLUTION
+
+
+def certify(field, movers, v0, omega0, v, omega, period=0.1):
+    shape = DISC.vertices, DISC.inscribed, DISC.circumscribed
+    return stop_kernels.certify(
+        field, 0.0, 0.0, RESOLUTION, *shape, 0.05, 1.0, movers, 0.1, 0.1, 0.0, 2.0, 2.0, 0.0,
+        v0, omega0, v, omega, LIMITS, period,
+    )
+
+
+def test_a_wall_ahead_forbids_what_could_not_stop():
+    closed = np.zeros((SIDE, SIDE), bool)
+    closed[:, 56:] = True  # its first centres at x = 2.825
+    field = distance_field(closed, RESOLUTION)
+    free = 2.825 - 2.0 - 0.3 - 0.05
+    fast = math.sqrt(2.0 * LIMITS.v_brake * free)
+    assert certify(field, NOBODY, 0.9 * fast, 0.0, 0.8 * fast, 0.0) == stop_kernels.ADMISSIBLE
+    assert certify(field, NOBODY, 1.05 * fast, 0.0, 1.05 * fast, 0.0) == stop_kernels.NO_STOP
+    assert certify(field, NOBODY, 0.0, 0.0, 0.0, 1.0) == stop_kernels.ADMISSIBLE
+
+
+def test_a_mover_forbids_what_would_meet_it():
+    field = np.full((SIDE, SIDE), 9.0, np.float32)
+    coming = np.array([[3.2, 2.0, -1.0, 0.0, 0.3]])
+    beside = np.array([[2.0, 3.8, 0.0, 0.2, 0.3]])
+    assert certify(field, coming, 0.8, 0.0, 0.8, 0.0) == stop_kernels.MOVER
+    assert certify(field, beside, 0.8, 0.0, 0.8, 0.0) == stop_kernels.ADMISSIBLE

@@ -1,0 +1,193 @@
+"""Episodes load back equal, and damage is told."""
+
+import dataclasses
+import json
+import math
+import zipfile
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dynastar.episode import Episode, EventRecord, PlanRecord
+from dynastar.errors import EpisodeError, InputError
+from dynastar.geometry import Pose2D
+from dynastar.grid import GridFrame, OccupancyGrid
+from dynastar.io import load_episode, save_episode, write_json, written_aside
+from dynastar.path import Trajectory
+
+
+def episode(ticks: int = 5, movers: int = 2, plans: int = 2, masks: bool = True) -> Episode:
+    rng = np.random.default_rng(ticks)
+    shape = (4, 6)
+    return Episode(
+        grid=OccupancyGrid(
+            rng.integers(-1, 101, shape, dtype=np.int8),
+            GridFrame(0.05, -1.0, 1e-5, 0.3),
+            keepout=rng.random(shape) < 0.5 if masks else None,
+            speed_limit=np.full(shape, np.inf, np.float32) if masks else None,
+        ),
+        robot="jackal",
+        radius=0.3327,
+        footprint=rng.random((4, 2)),
+        goals=np.array([[1.0, 2.0, math.nan], [3.0, 4.0, 0.1]]),
+        goal_tolerance=0.25,
+        trajectory=Trajectory(
+            np.arange(ticks) * 0.1, rng.random((ticks, 3)), rng.random((ticks, 2))
+        ),
+        commands=rng.random((ticks, 2)),
+        clearance=np.full(ticks, np.inf),
+        command_ms=rng.random(ticks),
+        states=np.array(["driving", "arrived", "wärten"] * ticks, dtype=np.str_)[:ticks],
+        movers=rng.random((ticks, movers, 2)),
+        mover_radii=rng.random(movers),
+        obstacles=tuple(rng.random((k, 2)) for k in (3, 24)[:plans]),
+        plans=tuple(
+            PlanRecord(0.1 * k, "blocked", rng.random((k + 1, 2)), np.full((k, 2), k, np.int32))
+            for k in range(plans)
+        ),
+        events=(EventRecord(0.2, "contact", "with a 'mover'\n"),)[:plans],
+        outcome="arrived",
+        reason="within 0.25 m",
+        contact="",
+        explored_frame=(0.1, 0.0, -2.0, 0.0),
+        config={"dwa": {"horizon": 3.0, "none": None}, "limit": math.inf},
+        scenario={"map": "a.yaml", "start": [1, 2.5]},
+    )
+
+
+def same(a: Any, b: Any) -> bool:
+    if dataclasses.is_dataclass(a):
+        names = [field.name for field in dataclasses.fields(a)]
+        return type(a) is type(b) and all(same(getattr(a, n), getattr(b, n)) for n in names)
+    if isinstance(a, np.ndarray):
+        numbers = a.dtype.kind == "f"
+        return a.dtype == b.dtype and np.array_equal(a, b, equal_nan=numbers)
+    if isinstance(a, tuple | list):
+        return type(a) is type(b) and len(a) == len(b) and all(map(same, a, b))
+    return type(a) is type(b) and a == b
+
+
+@pytest.mark.parametrize("ticks", [0, 1, 5])
+@pytest.mark.parametrize("movers", [0, 2])
+@pytest.mark.parametrize("plans", [0, 2])
+@pytest.mark.parametrize("masks", [True, False])
+@pytest.mark.parametrize("name", ["run.npz", "run.dynastar"])
+def test_an_episode_loads_back_equal(tmp_path, ticks, movers, plans, masks, name):
+    before = episode(ticks, movers, plans, masks)
+    save_episode(before, tmp_path / name)
+    after = load_episode(tmp_path / name)
+    assert same(before, after)
+    assert not after.commands.flags.writeable
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
+def test_the_same_episode_gives_the_same_bytes(tmp_path):
+    save_episode(episode(), tmp_path / "a.npz")
+    save_episode(episode(), tmp_path / "b.npz")
+    assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
+
+
+def test_no_damage_gives_anything_but_an_episode_or_an_episode_error(tmp_path):
+    path = tmp_path / "a.npz"
+    save_episode(episode(), path)
+    whole = path.read_bytes()
+    for k in range(0, len(whole), 29):
+        path.write_bytes(whole[:k])
+        with pytest.raises(EpisodeError, match=r"a\.npz: "):
+            load_episode(path)
+        path.write_bytes(whole[:k] + bytes([whole[k] ^ 0x55]) + whole[k + 1 :])
+        try:
+            assert isinstance(load_episode(path), Episode)
+        except EpisodeError:
+            continue
+
+
+def rewritten(tmp_path, change) -> None:
+    with np.load(tmp_path / "a.npz") as members:
+        arrays = dict(members)
+    change(arrays)
+    np.savez(tmp_path / "a.npz", **arrays)
+
+
+def header(**changes):
+    def change(arrays):
+        new = json.loads(arrays["header"].tobytes()) | changes
+        arrays["header"] = np.frombuffer(json.dumps(new).encode(), np.uint8)
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (header(version=2), "version 2, this dynastar reads 1"),
+        (header(format="other"), "not an episode"),
+        (header(plans=[]), "damaged"),
+        (header(frame=[0, 0, 0, 0]), "resolution > 0"),
+        (lambda arrays: arrays.pop("header"), "lacks 'header'"),
+        (lambda arrays: arrays.pop("movers"), "lacks 'movers'"),
+        (lambda arrays: arrays.update(commands=np.zeros((4, 2))), "'commands' has shape"),
+        (lambda arrays: arrays.update(poses=np.zeros(5)), "'poses' has shape"),
+        (lambda arrays: arrays.update(mover_radii=np.zeros(9)), "'mover_radii' has shape"),
+        (lambda arrays: arrays.update(commands=np.full((5, 2), "a")), "expected numbers"),
+        (lambda arrays: arrays.update(plan_rows=np.array([1, 1])), "add up"),
+        (lambda arrays: arrays.update(plan_rows=np.array([-1, 4])), "add up"),
+        (lambda arrays: arrays.update(clearance=np.array([None] * 5)), "damaged"),
+    ],
+)
+def test_an_episode_that_lies_says_where(tmp_path, change, message):
+    save_episode(episode(), tmp_path / "a.npz")
+    rewritten(tmp_path, change)
+    with pytest.raises(EpisodeError, match=f"a.npz: .*{message}"):
+        load_episode(tmp_path / "a.npz")
+
+
+def test_what_is_no_episode_at_all(tmp_path):
+    with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
+        archive.writestr("hello", "world")
+    (tmp_path / "b.zip").write_text("hello")
+    for name in ("a.zip", "b.zip", "none.npz", "."):
+        with pytest.raises(EpisodeError):
+            load_episode(tmp_path / name)
+    unsayable = dataclasses.replace(episode(), config={"a": object()})
+    with pytest.raises(EpisodeError, match="a header cannot hold a object"):
+        save_episode(unsayable, tmp_path / "c.npz")
+    assert not (tmp_path / "c.npz").exists()
+
+
+def test_json_holds_no_nan_and_is_written_whole(tmp_path):
+    path = tmp_path / "new" / "a.json"
+    write_json(
+        path,
+        {
+            "a": math.nan,
+            "b": [math.inf, 1, True, None, "ä"],
+            "pose": Pose2D(1.0, 2.0),
+            "array": np.array([[1.5, math.nan]]),
+            "number": np.float32(0.5),
+            "path": path.name,
+        },
+    )
+    assert json.loads(path.read_text(encoding="utf-8"), parse_constant=pytest.fail) == {
+        "a": None,
+        "b": [None, 1, True, None, "ä"],
+        "pose": {"x": 1.0, "y": 2.0, "theta": 0.0},
+        "array": [[1.5, None]],
+        "number": 0.5,
+        "path": "a.json",
+    }
+    with pytest.raises(TypeError, match="cannot hold a object"):
+        write_json(path, object())
+    assert [p.name for p in path.parent.iterdir()] == ["a.json"]
+
+
+def test_what_fails_while_it_is_written_leaves_the_old_file(tmp_path):
+    path = tmp_path / "a.txt"
+    path.write_text("old")
+    with pytest.raises(ZeroDivisionError), written_aside(path) as aside:
+        aside.with_suffix(".txt").write_text("half") / 0
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+    with pytest.raises(InputError, match="cannot be written"), written_aside(path / "b") as aside:
+        pytest.fail("there is no such folder")

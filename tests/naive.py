@@ -1,0 +1,158 @@
+"""Slow and obvious answers to compare the fast ones with."""
+
+import heapq
+import math
+
+import numpy as np
+import shapely
+
+STRAIGHT, DIAGONAL = 985, 1393  # the search's units: 1393 / 985 for sqrt(2)
+STEPS = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)]
+
+
+def neighbours(occupied, cell):
+    """Where one step leads to, corners not cut, and whether it is a diagonal one."""
+    rows, columns = occupied.shape
+
+    def free(r, c):
+        return 0 <= r < rows and 0 <= c < columns and not occupied[r, c]
+
+    r, c = cell
+    for dr, dc in STEPS:
+        if free(r + dr, c + dc) and free(r + dr, c) and free(r, c + dc):
+            yield (r + dr, c + dc), bool(dr and dc)
+
+
+def shortest(occupied, start):
+    """Dijkstra in floats: the length of the shortest way to every cell that can be reached."""
+    lengths = {start: 0.0}
+    queue = [(0.0, start)]
+    closed = set()
+    while queue:
+        length, cell = heapq.heappop(queue)
+        if cell in closed:
+            continue
+        closed.add(cell)
+        for n, diagonal in neighbours(occupied, cell):
+            longer = length + (math.sqrt(2) if diagonal else 1.0)
+            if longer < lengths.get(n, math.inf):
+                lengths[n] = longer
+                heapq.heappush(queue, (longer, n))
+    return lengths
+
+
+def h(config, n, goal):
+    """The estimate h of Eq. 2 in the search's units."""
+    dr, dc = abs(n[0] - goal[0]), abs(n[1] - goal[1])
+    if config.estimate == "euclidean":
+        return int(STRAIGHT * math.sqrt(dr * dr + dc * dc))
+    return STRAIGHT * abs(dr - dc) + DIAGONAL * min(dr, dc)
+
+
+def p_over_q(config, occupied, n, start, goal):
+    """P / Q in its three readings, at most 1."""
+    if config.q == "ratio":
+        a = config.around
+        around = occupied[max(n[0] - a, 0) : n[0] + a + 1, max(n[1] - a, 0) : n[1] + a + 1]
+        return min(around.sum() / max(occupied.sum(), 1), 1.0)
+    r0, r1 = sorted((n[0], goal[0]))
+    c0, c1 = sorted((n[1], goal[1]))
+    p = occupied[r0 : r1 + 1, c0 : c1 + 1].sum()
+    rows, columns = abs(start[0] - goal[0]) + 1, abs(start[1] - goal[1]) + 1
+    return min(p / (rows * columns if config.q == "rectangle" else max(rows, columns)), 1.0)
+
+
+def cos_beta(config, n, start, goal):
+    """cos(beta), 1 at start and goal."""
+    if n in (start, goal):
+        return 1.0
+    to_goal = (goal[0] - n[0], goal[1] - n[1])
+    from_start = (n[0] - start[0], n[1] - start[1])
+    dot = from_start[0] * to_goal[0] + from_start[1] * to_goal[1]
+    cosine = dot / (math.hypot(*from_start) * math.hypot(*to_goal))
+    return cosine if config.beta == "progress" else -cosine
+
+
+def h_improved(config, occupied, n, parent, start, goal):
+    """h_A(n) of Eq. 2."""
+    value = h(config, n, goal)
+    if config.parent:
+        value += h(config, parent, goal)
+    value -= config.k * STRAIGHT * cos_beta(config, n, start, goal)
+    if config.exponential:
+        value *= math.exp(p_over_q(config, occupied, n, start, goal))
+    return max(value, 0.0)
+
+
+def improved(occupied, start, goal, config):
+    """Eq. 3, literally, the newest first among equal f: (length, expanded cells), or None."""
+    g, parents, closed, serial = {start: 0}, {start: None}, set(), 0
+    queue = [(0, 0, start)]
+    while queue:
+        _, _, cell = heapq.heappop(queue)
+        if cell in closed:
+            continue
+        closed.add(cell)
+        if cell == goal:
+            break
+        for n, diagonal in neighbours(occupied, cell):
+            longer = g[cell] + (DIAGONAL if diagonal else STRAIGHT)
+            if n in closed or longer >= g.get(n, math.inf):
+                continue
+            g[n], parents[n] = longer, cell
+            serial += 1
+            f = longer + int(config.weight * h_improved(config, occupied, n, cell, start, goal))
+            heapq.heappush(queue, (f, -serial, n))
+    if goal not in closed:
+        return None
+    length, cell = 0.0, goal
+    while parents[cell] is not None:
+        length += math.dist(cell, parents[cell])
+        cell = parents[cell]
+    return length, closed
+
+
+def distances(blocked):
+    """Cells from every cell's centre to the nearest blocked cell's centre."""
+    at = np.argwhere(blocked)
+    each = np.argwhere(np.ones_like(blocked))
+    gaps = np.hypot(*(each[:, None, :] - at[None, :, :]).transpose(2, 0, 1)).min(axis=1)
+    return gaps.reshape(blocked.shape)
+
+
+def clearance(blocked, points, outside=True):
+    """Cells from a polyline (n, 2) of (row, column) to the nearest blocked square."""
+    squares = [shapely.box(r, c, r + 1, c + 1) for r, c in np.argwhere(blocked)]
+    if outside:
+        rows, columns = blocked.shape
+        far = shapely.box(-1e3, -1e3, rows + 1e3, columns + 1e3)
+        squares.append(far - shapely.box(0, 0, rows, columns))
+    line = shapely.LineString(points) if len(points) > 1 else shapely.Point(points[0])
+    return min((line.distance(square) for square in squares), default=math.inf)
+
+
+def slips_through(blocked, a, b):
+    """Whether a point going from a to b enters a blocked square, or passes a seam or corner."""
+    line = shapely.LineString([a, b])
+    low, high = np.floor(np.minimum(a, b)).astype(int) - 1, np.floor(np.maximum(a, b)).astype(int)
+    rows, columns = blocked.shape
+
+    def is_blocked(r, c):
+        return not (0 <= r < rows and 0 <= c < columns) or blocked[r, c]
+
+    for r in range(low[0], high[0] + 2):
+        for c in range(low[1], high[1] + 2):
+            if not is_blocked(r, c):
+                continue
+            for height, width in ((1, 1), (2, 1), (1, 2)):
+                if is_blocked(r + height - 1, c + width - 1):
+                    inner = shapely.box(r, c, r + height, c + width).buffer(
+                        -1e-9, join_style="mitre"
+                    )
+                    if line.intersects(inner):
+                        return True
+            for dr, dc in ((1, 1), (1, -1)):
+                corner = shapely.Point(r + 1, c + max(dc, 0))
+                if is_blocked(r + dr, c + dc) and line.distance(corner) < 1e-9:
+                    return True
+    return False

@@ -1,0 +1,134 @@
+import math
+
+import numpy as np
+import pytest
+
+from dynastar.geometry import Pose2D
+from dynastar.grid import OccupancyGrid
+from dynastar.obstacles import LayerConfig, ObstacleLayer
+from dynastar.obstacles.layer import SEEN_FREE, SEEN_OCCUPIED, UNSEEN
+from dynastar.obstacles.layer_kernels import scan_points
+from dynastar.scan import LaserScan
+
+N = 360
+
+
+def scan(ranges, stamp=1.0, fov=math.tau, range_min=0.0, range_max=5.0):
+    increment = math.tau / N if fov == math.tau else fov / (N - 1)
+    return LaserScan(
+        stamp, np.broadcast_to(ranges, N), -fov / 2, increment, range_min, range_max
+    )
+
+
+def layer_after(*scans, pose=Pose2D(0.0, 0.0, 0.0), config=LayerConfig(), now=None, error=0.0):
+    layer = ObstacleLayer(config)
+    layer.follow(pose.x, pose.y)
+    for s in scans:
+        points, _ = scan_points(
+            s.ranges, s.range_min, s.range_max, s.angle_min, s.angle_increment, *pose
+        )
+        layer.see(s, pose, points, np.zeros(len(points), bool), error, 0.0)
+    layer.update(scans[-1].stamp if now is None else now)
+    return layer
+
+
+def state(layer, x, y):
+    a = layer.config.resolution
+    return layer.states[math.floor(y / a) - layer.row0, math.floor(x / a) - layer.column0]
+
+
+def test_beams_free_what_they_pass_and_mark_where_they_end():
+    layer = layer_after(scan(2.0))
+    assert state(layer, 1.5, 0.02) == SEEN_FREE
+    assert state(layer, 1.98, 0.02) != SEEN_FREE or state(layer, 2.02, 0.02) == SEEN_OCCUPIED
+    assert (layer.states == SEEN_OCCUPIED).sum() > 150
+    assert state(layer, 3.0, 0.0) == UNSEEN
+
+
+def test_infinity_frees_up_to_range_max_and_marks_nothing():
+    layer = layer_after(scan(np.inf))
+    assert state(layer, 4.8, 0.02) == SEEN_FREE
+    assert state(layer, 5.1, 0.0) == UNSEEN
+    assert not (layer.states == SEEN_OCCUPIED).any()
+
+
+@pytest.mark.parametrize("reading", [np.nan, 0.0, -np.inf, -1.0, 0.05, 7.0])
+def test_what_says_nothing_changes_nothing(reading):
+    layer = layer_after(scan(reading, range_min=0.1))
+    assert (layer.states == UNSEEN).all()
+
+
+def test_nothing_is_free_between_beams_wider_apart_than_the_narrowest_obstacle():
+    config = LayerConfig(narrowest=0.04)  # 360 beams are 0.04 m apart at 2.3 m
+    layer = layer_after(scan(4.0), config=config)
+    assert state(layer, 2.0, 0.02) == SEEN_FREE
+    assert state(layer, 2.6, 0.02) == UNSEEN
+
+
+def test_free_reaches_as_far_as_the_shorter_neighbour():
+    ranges = np.full(N, 4.0)
+    ranges[180] = 1.0  # the beam along x
+    layer = layer_after(scan(ranges))
+    step = math.tau / N
+    for side in (-0.4, 0.4):
+        assert state(layer, 2.0 * math.cos(side * step), 2.0 * math.sin(side * step)) == UNSEEN
+
+
+def test_the_range_error_is_kept_clear_of():
+    layer = layer_after(scan(2.0), error=0.3)
+    assert state(layer, 1.6, 0.02) == SEEN_FREE
+    assert state(layer, 1.8, 0.02) == UNSEEN
+
+
+def test_forgetting_turns_into_unseen_never_into_free():
+    layer = layer_after(scan(2.0, stamp=1.0), config=LayerConfig(memory=5.0), now=20.0)
+    assert (layer.states == UNSEEN).all()
+    assert (layer.open == 0).all()
+
+
+def test_a_later_scan_clears_what_has_gone():
+    layer = layer_after(scan(2.0, stamp=1.0), scan(3.0, stamp=1.1))
+    assert state(layer, 2.02, 0.02) == SEEN_FREE
+
+
+def test_a_gap_in_the_field_of_view_stays_unseen():
+    layer = layer_after(scan(2.0, fov=math.radians(270)))
+    assert state(layer, 1.0, 0.0) == SEEN_FREE
+    assert state(layer, -1.0, 0.02) == UNSEEN
+
+
+def test_the_window_moves_along_and_keeps_what_it_knows():
+    layer = layer_after(scan(2.0))
+    layer.follow(3.0, -2.0)
+    layer.update(1.0)
+    assert state(layer, 1.5, 0.02) == SEEN_FREE
+    assert layer.origin[0] == pytest.approx(3.0 - 6.0, abs=0.051)
+
+
+def test_the_disc_at_the_start_is_free_where_neither_map_nor_scan_shows_anything():
+    occupied = np.zeros((10, 10), bool)
+    occupied[5, 6] = True  # 0.1 m cells, the map's corner at (-0.5, -0.5)
+    layer = ObstacleLayer()
+    layer.set_grid(OccupancyGrid.from_occupied(occupied, 0.1, -0.5, -0.5))
+    layer.follow(0.0, 0.0)
+    layer.assume_free(0.0, 0.0, 0.3, 1.0, fresh=True)
+    layer.update(1.0)
+    assert state(layer, -0.2, 0.0) == SEEN_FREE
+    assert state(layer, 0.15, 0.05) == UNSEEN
+    assert state(layer, 0.4, 0.0) == UNSEEN
+
+
+def test_keepout_is_closed_though_seen_free():
+    keepout = np.zeros((10, 10), bool)
+    keepout[:, 8] = True
+    grid = OccupancyGrid.from_occupied(np.zeros((10, 10), bool), 0.5, -2.5, -2.5)
+    layer = ObstacleLayer()
+    layer.set_grid(OccupancyGrid(grid.values, grid.frame, keepout))
+    layer.follow(0.0, 0.0)
+    s = scan(np.inf)
+    layer.see(s, Pose2D(0.0, 0.0, 0.0), np.empty((0, 2)), np.empty(0, bool), 0.0, 0.0)
+    layer.update(1.0)
+    assert state(layer, 1.7, 0.0) == SEEN_FREE
+    a = layer.config.resolution
+    row, column = math.floor(0.0 / a) - layer.row0, math.floor(1.7 / a) - layer.column0
+    assert layer.open[row, column] == 0

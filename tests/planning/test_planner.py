@@ -1,0 +1,168 @@
+import numpy as np
+import pytest
+
+from dynastar.errors import ConfigError, GoalOccupied, NoPath, OutOfMap, StartOccupied
+from dynastar.grid import GridFrame, OccupancyGrid
+from dynastar.planning import PLANNERS, GridPlanner, PlannerConfig, plan
+from naive import clearance
+
+ROOM = """
+....................
+....................
+....................
+....................
+..........#.........
+..........#.........
+..........#.........
+..........#.........
+..........#.........
+..........#.........
+"""
+
+
+def room(resolution=0.1):
+    return OccupancyGrid.from_text(ROOM, resolution)
+
+
+@pytest.mark.parametrize("planner", list(PLANNERS))
+@pytest.mark.parametrize("radius", [0.0, 0.05, 0.08])
+def test_a_plan_goes_from_start_to_goal(planner, radius):
+    start, goal = (0.33, 0.21), (1.72, 0.18)
+    made = plan(room(), start, goal, planner, radius, explored=True)
+    assert made.planner == planner
+    assert made.radius == radius
+    for path in (made.path, made.grid_path):
+        assert tuple(path.points[0]) == start
+        assert tuple(path.points[-1]) == goal
+        cells = room().frame.points_to_grid(path.points)
+        assert clearance(room().blocked(), cells) >= radius / 0.1 - 1e-6
+    assert made.path.length < made.grid_path.length
+    assert len(made.explored) == made.expanded
+    assert made.clear_from == 0.0
+    assert made.time_ms > 0.0
+    assert made.cost == pytest.approx(made.grid_path.length / 0.1, abs=1.5)
+
+
+def test_a_turned_map_turns_the_plan():
+    frame = GridFrame(0.1, 3.0, -2.0, 0.7)
+    turned = OccupancyGrid(room().values, frame)
+    start, goal = (0.33, 0.21), (1.72, 0.18)
+    ends = [frame.to_world(y / 0.1, x / 0.1) for x, y in (start, goal)]
+    expected = plan(room(), start, goal).path
+    assert plan(turned, *ends).path.length == pytest.approx(expected.length)
+
+
+def test_without_smoothing_the_path_is_the_grid_path():
+    made = GridPlanner(room(), 0.0, config=PlannerConfig(smoothing=False)).plan((0, 0), (1.9, 0))
+    assert (made.path.points == made.grid_path.points).all()
+
+
+def test_start_is_goal():
+    made = plan(room(), (0.33, 0.2), (0.33, 0.2))
+    assert made.path.length == 0.0
+    assert made.grid_path.length == 0.0
+    assert len(made.path.points) <= 2
+
+
+def test_a_start_inside_the_inflation_finds_its_way_out():
+    start = (0.99, 0.3)  # a hand's breadth from the wall
+    made = plan(room(), start, (0.3, 0.3), radius=0.25)
+    assert tuple(made.path.points[0]) == start
+    assert 0.0 < made.clear_from < 0.5
+    rest = made.path.resampled(made.clear_from, made.path.length, 0.01)
+    cells = room().frame.points_to_grid(rest)
+    assert clearance(room().blocked(), cells) >= 2.5 - 1e-6
+    assert made.grid_path.length >= made.path.length
+    planner = GridPlanner(room(), 0.25)
+    assert planner.path_blocked_at(made.path.points) == 0.0
+    assert planner.path_blocked_at(rest) is None
+
+
+def test_a_way_out_into_a_pocket_is_not_taken():
+    drawn = OccupancyGrid.from_text(
+        """
+        .............
+        .............
+        .............
+        .............
+        ######..#####
+        .....#.######
+        .....#..#####
+        .....#..#####
+        .....########
+        """.replace(" ", ""),
+        0.1,
+    )
+    made = plan(drawn, (0.69, 0.31), (0.3, 0.75), radius=0.0501)
+    assert made.path.length > 0.4
+
+
+def test_a_blocked_start_is_left_if_the_robot_has_a_size():
+    wall = (1.05, 0.2)
+    with pytest.raises(StartOccupied, match="lies in an obstacle"):
+        plan(room(), wall, (0.3, 0.2), radius=0.0)
+    made = plan(room(), wall, (0.3, 0.2), radius=0.1)
+    assert tuple(made.path.points[0]) == wall
+    assert made.path.length > 0.7
+    filled = OccupancyGrid.from_occupied(
+        np.pad(np.zeros((9, 9), bool), (0, 40)) | (np.add.outer(np.arange(49), np.arange(49)) > 16),
+        0.1,
+    )
+    with pytest.raises(StartOccupied, match="no way out"):
+        plan(filled, (4.0, 4.0), (0.4, 0.4), radius=0.1)
+
+
+def test_errors_have_names_and_say_what_is_wrong():
+    with pytest.raises(OutOfMap, match=r"the goal \(5, 0.2\) is off the map, which spans x 0 to 2"):
+        plan(room(), (0.3, 0.2), (5.0, 0.2))
+    with pytest.raises(OutOfMap, match="the start"):
+        plan(room(), (-0.01, 0.2), (0.3, 0.2))
+    with pytest.raises(OutOfMap):
+        plan(room(), (float("nan"), 0.2), (0.3, 0.2))
+    with pytest.raises(GoalOccupied, match="lies in an obstacle"):
+        plan(room(), (0.3, 0.2), (1.05, 0.2), radius=0.1)
+    with pytest.raises(GoalOccupied, match=r"has 0.05 m of clearance where 0.1 m are needed"):
+        plan(room(), (0.3, 0.2), (0.95, 0.2), radius=0.1)
+    with pytest.raises(NoPath):
+        plan(room(), (0.3, 0.3), (1.6, 0.3), radius=0.22)
+    with pytest.raises(ConfigError, match="did you mean 'improved'"):
+        plan(room(), (0.3, 0.2), (0.3, 0.2), "improvd")
+    with pytest.raises(ConfigError, match="radius"):
+        plan(room(), (0.3, 0.2), (0.3, 0.2), radius=-1.0)
+
+
+def test_unknown_cells_are_a_policy():
+    drawn = OccupancyGrid.from_text("..?..")
+    with pytest.raises(NoPath):
+        plan(drawn, (0.5, 0.5), (4.5, 0.5))
+    assert plan(drawn, (0.5, 0.5), (4.5, 0.5), unknown="free").path.length == 4.0
+
+
+def test_marking_a_window_is_as_if_made_anew():
+    rng = np.random.default_rng(3)
+    for radius in (0.0, 0.12, 0.33):
+        blocked = rng.random((30, 40)) < 0.03
+        planner = GridPlanner(OccupancyGrid.from_occupied(blocked, 0.1), radius)
+        for _ in range(10):
+            row, column = rng.integers(0, 25), rng.integers(0, 30)
+            patch = rng.random((rng.integers(1, 6), rng.integers(1, 11))) < 0.1
+            blocked[row : row + patch.shape[0], column : column + patch.shape[1]] = patch
+            planner.mark(row, column, patch)
+            anew = GridPlanner(OccupancyGrid.from_occupied(blocked, 0.1), radius)
+            assert (planner.blocked == blocked).all()
+            assert (planner.inflated == anew.inflated).all()
+    with pytest.raises(OutOfMap):
+        planner.mark(28, 0, np.ones((3, 1), dtype=bool))
+
+
+def test_where_a_path_is_blocked():
+    planner = GridPlanner(room(), 0.05)
+    line = [(0.2, 0.2), (0.5, 0.2), (1.8, 0.2)]
+    assert planner.path_blocked_at(line) == pytest.approx(0.75, abs=1e-3)
+    assert planner.path_blocked_at(line, radius=0.1) == pytest.approx(0.7, abs=1e-3)
+    assert planner.path_blocked_at(line[:2]) is None
+    assert planner.path_blocked_at(line[:1]) is None
+    made = planner.plan((0.2, 0.2), (1.8, 0.2))
+    assert planner.path_blocked_at(made.path.points) is None
+    planner.mark(6, 9, np.ones((2, 1), dtype=bool))
+    assert 0.0 < planner.path_blocked_at(made.path.points) < made.path.length

@@ -1,0 +1,176 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from dynastar.errors import ConfigError, GoalOccupied, MapError, NoPath, OutOfMap, StartOccupied
+from dynastar.planning import PLANNERS, HeuristicConfig, SearchGrid
+from naive import improved, shortest
+
+CONFIGS = [
+    HeuristicConfig(),
+    HeuristicConfig(estimate="euclidean"),
+    HeuristicConfig(exponential=False),
+    HeuristicConfig(parent=False),
+    HeuristicConfig(k=0.0),
+    HeuristicConfig(k=20.0),
+    HeuristicConfig(beta="interior"),
+    HeuristicConfig(q="line"),
+    HeuristicConfig(q="ratio", around=3),
+    HeuristicConfig(weight=1.5),
+]
+
+
+def random_world(seed, size=14, density=0.3):
+    """A random mask and two free cells."""
+    rng = np.random.default_rng(seed)
+    occupied = rng.random(rng.integers(2, size, 2)) < density
+    occupied[0, 0] = occupied[-1, -1] = False
+    free = np.argwhere(~occupied)
+    start, goal = free[rng.integers(0, len(free), 2)]
+    return occupied, tuple(map(int, start)), tuple(map(int, goal))
+
+
+def assert_legal(occupied, cells, start, goal):
+    """Free cells, single steps, no corner cut."""
+    assert tuple(cells[0]) == start
+    assert tuple(cells[-1]) == goal
+    assert not occupied[cells[:, 0], cells[:, 1]].any()
+    steps = np.diff(cells, axis=0)
+    assert (np.abs(steps).max(axis=1, initial=0) == 1).all() if len(steps) else True
+    for (r, c), (dr, dc) in zip(cells[:-1], steps, strict=True):
+        assert not occupied[r + dr, c]
+        assert not occupied[r, c + dc]
+
+
+@pytest.mark.parametrize("algorithm", ["dijkstra", "astar"])
+@given(seed=st.integers(0, 10**9))
+@settings(max_examples=150, deadline=None)
+def test_the_shortest_way_is_found(algorithm, seed):
+    occupied, start, goal = random_world(seed)
+    lengths = shortest(occupied, start)
+    grid = SearchGrid(occupied)
+    if goal not in lengths:
+        with pytest.raises(NoPath):
+            grid.search(start, goal, algorithm)
+        return
+    found = grid.search(start, goal, algorithm)
+    assert found.cost == pytest.approx(lengths[goal], rel=1e-6)
+    assert_legal(occupied, found.cells, start, goal)
+    euclidean = grid.search(start, goal, algorithm, HeuristicConfig(estimate="euclidean"))
+    assert euclidean.cost == pytest.approx(lengths[goal], rel=1e-6)
+
+
+@pytest.mark.parametrize("algorithm", list(PLANNERS))
+@pytest.mark.parametrize("config", CONFIGS)
+def test_every_reading_of_eqs_2_and_3_is_what_it_says(algorithm, config):
+    for seed in range(25):
+        occupied, start, goal = random_world(seed, size=18)
+        expected = improved(occupied, start, goal, PLANNERS[algorithm](config))
+        if expected is None:
+            continue
+        length, closed = expected
+        found = SearchGrid(occupied).search(start, goal, algorithm, config, explored=True)
+        assert found.cost == pytest.approx(length, rel=1e-12)
+        assert found.expanded == len(closed)
+        assert {tuple(cell) for cell in found.explored} == closed
+        assert_legal(occupied, found.cells, start, goal)
+
+
+def test_a_grid_is_searched_again_and_again():
+    occupied, _, _ = random_world(5, size=40, density=0.2)
+    grid = SearchGrid(occupied)
+    free = np.argwhere(~occupied)
+    rng = np.random.default_rng(1)
+    lengths = {}
+    for i, j in rng.integers(0, len(free), (100, 2)):
+        start, goal = tuple(map(int, free[i])), tuple(map(int, free[j]))
+        lengths = shortest(occupied, start)
+        if goal in lengths:
+            assert grid.search(start, goal).cost == pytest.approx(lengths[goal])
+
+
+def test_the_stamp_runs_over():
+    grid = SearchGrid(np.zeros((3, 3), dtype=bool))
+    grid._stamp = 2**22 - 3
+    for _ in range(5):
+        assert grid.search((0, 0), (2, 2)).cost == pytest.approx(math.sqrt(8))
+
+
+@given(st.integers(0, 10**9))
+@settings(max_examples=50, deadline=None)
+def test_an_updated_grid_is_as_if_made_anew(seed):
+    occupied, start, goal = random_world(seed)
+    grid = SearchGrid(occupied)
+    assert grid.sums[-1, -1] == occupied.sum()
+    rng = np.random.default_rng(seed)
+    rows, columns = occupied.shape
+    row, column = rng.integers(0, rows), rng.integers(0, columns)
+    patch = rng.random((rng.integers(0, rows - row + 1), rng.integers(0, columns - column + 1)))
+    changed = occupied.copy()
+    changed[row : row + patch.shape[0], column : column + patch.shape[1]] = patch < 0.3
+    grid.update(row, column, patch < 0.3)
+    anew = SearchGrid(changed)
+    assert (grid.occupied == changed).all()
+    assert (grid._moves == anew._moves).all()
+    assert (grid.sums == anew.sums).all()
+    assert (grid.sums[1:, 1:] == changed.cumsum(0).cumsum(1)).all()
+    if not changed[start] and not changed[goal]:
+        try:
+            expected = anew.search(start, goal, "improved")
+        except NoPath:
+            with pytest.raises(NoPath):
+                grid.search(start, goal, "improved")
+        else:
+            assert (grid.search(start, goal, "improved").cells == expected.cells).all()
+
+
+def test_a_flood_reaches_what_dijkstra_reaches():
+    occupied, start, _ = random_world(11, size=30)
+    grid = SearchGrid(occupied)
+    lengths = grid.flood(start)
+    expected = shortest(occupied, start)
+    assert np.isfinite(lengths).sum() == len(expected)
+    for cell, length in expected.items():
+        assert lengths[cell] == pytest.approx(length, rel=1e-6)
+        assert_legal(occupied, grid.way_to(cell), start, cell)
+    with pytest.raises(NoPath):
+        grid.way_to(tuple(map(int, np.argwhere(occupied)[0])))
+
+
+def test_the_improved_one_expands_less_than_the_traditional_one():
+    rng = np.random.default_rng(0)
+    occupied = rng.random((100, 100)) < 0.2
+    occupied[0, 0] = occupied[99, 99] = False
+    grid = SearchGrid(occupied)
+    counts = {name: grid.search((0, 0), (99, 99), name).expanded for name in PLANNERS}
+    assert counts["improved"] < 0.5 * counts["astar"] < 0.5 * counts["dijkstra"]
+
+
+def test_errors_have_names_and_say_where():
+    grid = SearchGrid([[False, True, False], [False, True, False]])
+    with pytest.raises(OutOfMap, match=r"goal, cell \(0, 3\), is off the map"):
+        grid.search((0, 0), (0, 3))
+    with pytest.raises(OutOfMap, match="start"):
+        grid.search((-1, 0), (0, 0))
+    with pytest.raises(StartOccupied, match=r"\(0, 1\)"):
+        grid.search((0, 1), (0, 0))
+    with pytest.raises(GoalOccupied, match=r"\(0, 1\)"):
+        grid.search((0, 0), (0, 1))
+    with pytest.raises(NoPath, match="no way leads"):
+        grid.search((0, 0), (0, 2))
+    with pytest.raises(ConfigError, match="did you mean 'astar'"):
+        grid.search((0, 0), (0, 0), "a-star")
+    with pytest.raises(MapError, match="expected"):
+        SearchGrid(np.zeros((0, 3), dtype=bool))
+    with pytest.raises(OutOfMap, match="leaves the map"):
+        grid.update(1, 2, np.zeros((2, 1), dtype=bool))
+
+
+def test_start_is_goal():
+    found = SearchGrid(np.zeros((2, 2), dtype=bool)).search((1, 1), (1, 1), "improved")
+    assert found.cells.tolist() == [[1, 1]]
+    assert found.cost == 0.0
+    assert found.expanded == 1

@@ -1,0 +1,122 @@
+import itertools
+import math
+import time
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from dynastar.clearance import inflate
+from dynastar.errors import NoPath
+from dynastar.planning import SearchGrid, segment_clear, smooth
+from naive import clearance, slips_through
+
+
+def length(points):
+    return np.hypot(*np.diff(points, axis=0).T).sum()
+
+
+@given(st.integers(0, 10**9), st.sampled_from([0.2, 0.5, 1.0, 1.3, 2.5]))
+@settings(max_examples=200, deadline=None)
+def test_a_disc_is_stopped_by_squares_nearer_than_its_radius(seed, radius):
+    rng = np.random.default_rng(seed)
+    rows, columns = rng.integers(3, 12, 2)
+    blocked = rng.random((rows, columns)) < 0.1
+    a, b = rng.uniform(0, [rows, columns], (2, 2))
+    if seed % 3 == 0:
+        a, b = np.floor(a) + 0.5, np.floor(b) + 0.5
+    gap = clearance(blocked, [a, b])
+    assert gap < 1e-8 or segment_clear(blocked, a, b, gap)
+    assert segment_clear(blocked, a, b, radius) == (gap >= radius - 1e-9)
+    assert not segment_clear(blocked, a, b, gap + 1e-6)
+
+
+@given(st.integers(0, 10**9))
+@settings(max_examples=300, deadline=None)
+def test_a_point_does_not_slip_through(seed):
+    rng = np.random.default_rng(seed)
+    rows, columns = rng.integers(2, 8, 2)
+    blocked = rng.random((rows, columns)) < 0.25
+    half_cells = rng.integers(0, [2 * rows + 1, 2 * columns + 1], (2, 2)) / 2.0
+    a, b = half_cells
+    if (a == b).all() or slips_on_the_edge(a, b, blocked.shape):
+        return
+    assert segment_clear(blocked, a, b, 0.0) != slips_through(blocked, a, b)
+
+
+def slips_on_the_edge(a, b, shape):
+    """Whether a segment touches the map's edge, where the oracle's outside and ours differ."""
+    return bool((np.minimum(a, b) <= 0).any() or (np.maximum(a, b) >= shape).any())
+
+
+def test_corners_and_seams():
+    single = np.array([[0, 1], [0, 0]], dtype=bool)
+    joint = np.array([[0, 1], [1, 0]], dtype=bool)
+    seam = np.ones((2, 2), dtype=bool)
+    assert segment_clear(single, (0.5, 0.5), (1.5, 1.5), 0.0)
+    assert not segment_clear(joint, (0.5, 0.5), (1.5, 1.5), 0.0)
+    assert not segment_clear(seam, (0.0, 1.0), (2.0, 1.0), 0.0)
+    assert segment_clear(single, (0.0, 1.0), (1.0, 1.0), 0.0)
+
+
+@given(st.integers(0, 10**9), st.sampled_from([0.0, 0.3, 0.7, 1.5, 2.2]), st.booleans())
+@settings(max_examples=150, deadline=None)
+def test_a_smoothed_path_is_shorter_and_as_clear(seed, radius, rounded):
+    rng = np.random.default_rng(seed)
+    blocked = rng.random((24, 30)) < (0.25 if radius < 0.5 else 0.03)
+    inflated = inflate(blocked, radius)
+    free = np.argwhere(~inflated)
+    if len(free) == 0:
+        return
+    start, goal = (tuple(map(int, free[i])) for i in rng.integers(0, len(free), 2))
+    try:
+        points = SearchGrid(inflated).search(start, goal, "improved").cells + 0.5
+    except NoPath:
+        return
+    smoothed = smooth(blocked, points, radius, 3.0 if rounded else 0.0)
+    assert (smoothed[0] == points[0]).all()
+    assert (smoothed[-1] == points[-1]).all()
+    assert length(smoothed) <= length(points) + 1e-9
+    for line in (points, smoothed):
+        assert radius == 0.0 or clearance(blocked, line) >= radius - 1e-9
+        for a, b in itertools.pairwise(line):
+            assert segment_clear(blocked, a, b, radius)
+
+
+def test_the_string_is_taut_round_a_wall():
+    blocked = np.zeros((40, 60), dtype=bool)
+    blocked[:30, 30] = True
+    points = SearchGrid(blocked).search((15, 5), (15, 55)).cells + 0.5
+    best = math.hypot(14.5, 24.5) + 1.0 + math.hypot(14.5, 24.5)
+    assert length(points) > 1.03 * best
+    assert length(smooth(blocked, points, 0.0)) < 1.01 * best
+    assert length(smooth(blocked, points, 0.0, 3.0)) < 1.003 * best
+
+
+def test_rounding_makes_a_corner_gentler():
+    blocked = np.zeros((60, 60), dtype=bool)
+    blocked[:40, 28:32] = True
+    points = SearchGrid(inflate(blocked, 5.0)).search((10, 10), (10, 50)).cells + 0.5
+
+    def sharpest(line):
+        steps = np.diff(line, axis=0)
+        return np.abs(np.diff(np.unwrap(np.arctan2(steps[:, 0], steps[:, 1])))).max()
+
+    assert sharpest(smooth(blocked, points, 5.0, 4.0)) < sharpest(smooth(blocked, points, 5.0))
+
+
+def test_short_paths_stay_as_they_are():
+    blocked = np.zeros((3, 3), dtype=bool)
+    assert smooth(blocked, [[0.5, 0.5]], 0.0).tolist() == [[0.5, 0.5]]
+    assert smooth(blocked, [[0.5, 0.5], [2.5, 1.5]], 0.0).tolist() == [[0.5, 0.5], [2.5, 1.5]]
+
+
+@pytest.mark.slow
+def test_a_thousand_cells_take_less_than_a_few_milliseconds():
+    blocked = np.zeros((1100, 1100), dtype=bool)
+    points = SearchGrid(blocked).search((10, 10), (400, 1009)).cells + 0.5
+    smooth(blocked, points, 6.0, 10.0)
+    began = time.perf_counter()
+    smooth(blocked, points, 6.0, 10.0)
+    assert time.perf_counter() - began < 5e-3

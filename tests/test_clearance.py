@@ -1,0 +1,62 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from dynastar.clearance import FAR, distance_field, inflate, update_window
+from naive import clearance, distances
+
+
+@given(st.integers(0, 10**6), st.floats(0.01, 0.5), st.sampled_from([0.05, 1.0]))
+def test_distance_field_is_exact(seed, density, resolution):
+    rng = np.random.default_rng(seed)
+    blocked = rng.random(rng.integers(1, 30, 2)) < density
+    field = distance_field(blocked, resolution)
+    assert field.dtype == np.float32
+    if blocked.any():
+        np.testing.assert_allclose(field, distances(blocked) * resolution, rtol=1e-6)
+    else:
+        assert (field == np.float32(FAR)).all()
+
+
+def test_distance_field_is_exact_far_away():
+    blocked = np.zeros((700, 900), dtype=bool)
+    blocked[3, 5] = True
+    field = distance_field(blocked, 1.0)
+    assert field[699, 899] == pytest.approx(math.hypot(696, 894), rel=1e-6)
+
+
+@given(st.integers(0, 10**6))
+def test_an_updated_window_is_as_if_made_anew(seed):
+    rng = np.random.default_rng(seed)
+    rows, columns = rng.integers(5, 40, 2)
+    blocked = rng.random((rows, columns)) < 0.1
+    cap = rng.uniform(0.1, 1.0)
+    field = np.minimum(distance_field(blocked, 0.1), np.float32(cap))
+    row, column = rng.integers(0, rows), rng.integers(0, columns)
+    height, width = rng.integers(1, rows - row + 1), rng.integers(1, columns - column + 1)
+    blocked[row : row + height, column : column + width] = rng.random((height, width)) < 0.1
+    update_window(field, blocked, 0.1, row, column, height, width, cap)
+    anew = np.minimum(distance_field(blocked, 0.1), np.float32(cap))
+    np.testing.assert_allclose(field, anew, rtol=1e-6)
+
+
+@pytest.mark.parametrize("radius", [0.0, 0.3, 0.5, 0.51, 0.8, 1.5, 2.0, 3.7])
+@pytest.mark.parametrize("outside", [True, False])
+def test_inflation_is_exact(radius, outside):
+    rng = np.random.default_rng(7)
+    for _ in range(3):
+        blocked = rng.random((14, 11)) < 0.05
+        inflated = inflate(blocked, radius, outside)
+        for r, c in np.ndindex(blocked.shape):
+            near = clearance(blocked, [(r + 0.5, c + 0.5)], outside) < radius
+            assert inflated[r, c] == (near or blocked[r, c])
+
+
+def test_inflation_leaves_its_argument_alone():
+    blocked = np.eye(4, dtype=bool)
+    for radius in (0.0, 1.5):
+        inflate(blocked, radius)[:] = True
+    assert (blocked == np.eye(4)).all()

@@ -1,0 +1,95 @@
+"""Every example runs, and the office is what its files say."""
+
+import importlib.util
+import re
+import runpy
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dynastar import load_map, load_scenario, run
+from dynastar.metrics import measure
+from dynastar.planning import segment_clear
+from dynastar.simulation import Scenario
+
+ROOT = Path(__file__).parents[1]
+EXAMPLES = ROOT / "examples"
+PROGRAMS = sorted(EXAMPLES.glob("[0-9]*.py"))
+LANE_CLEARANCE = 0.4  # m, from the middle of a walker's lane to anything
+
+
+def arrives(scenario: Scenario) -> None:
+    result = measure(run(scenario))
+    assert (result.outcome, result.contacts_moving, result.contacts_resting) == (
+        *("arrived", 0, 0),
+    ), result.reason
+    assert result.replans >= 1
+
+
+def check_lanes(scenario: Scenario) -> None:
+    """Walkers keep clear of the walls and of the unmapped obstacles, by the map and by shapely."""
+    import shapely
+
+    solids = shapely.union_all([shapely.Polygon(corners) for corners in scenario.obstacles])
+    for mover in scenario.movers:
+        assert shapely.LineString(mover.points).distance(solids) >= LANE_CLEARANCE
+        cells = scenario.grid.frame.points_to_grid(mover.points)
+        reach = LANE_CLEARANCE / scenario.grid.resolution
+        for a, b in pairwise(cells):
+            assert segment_clear(scenario.grid.blocked(), a, b, reach), mover.points
+
+
+@pytest.mark.parametrize("program", PROGRAMS, ids=lambda path: path.stem)
+def test_programs_run_and_are_short(
+    program: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert len(program.read_text().splitlines()) <= 40
+    monkeypatch.chdir(ROOT)
+    runpy.run_path(str(program), run_name="__main__")
+    said = capsys.readouterr().out
+    assert "improved" in said or "arrived" in said
+
+
+def test_the_readme_shows_the_drive_example() -> None:
+    shown = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    assert shown[0].strip() in (EXAMPLES / "02_drive.py").read_text()
+
+
+def test_the_office_is_what_its_script_draws() -> None:
+    spec = importlib.util.spec_from_file_location("draw", EXAMPLES / "office" / "draw_office.py")
+    assert spec is not None
+    assert spec.loader is not None
+    script = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(script)
+    drawn, stored = script.draw(), load_map(EXAMPLES / "office" / "office.yaml")
+    assert np.array_equal(drawn.values, stored.values)
+    assert drawn.frame == stored.frame
+    assert sum(path.stat().st_size for path in (EXAMPLES / "office").iterdir()) < 1_000_000
+
+
+def test_the_office_is_full_of_surprises() -> None:
+    scenario = load_scenario(EXAMPLES / "office" / "office.toml")
+    assert len(scenario.obstacles) >= 6
+    assert len(scenario.movers) >= 4
+    check_lanes(scenario)
+
+
+@pytest.mark.slow
+def test_the_robot_crosses_the_office() -> None:
+    arrives(load_scenario(EXAMPLES / "office" / "office.toml"))
+
+
+@pytest.mark.data
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["depot", "willow"])
+def test_the_robot_crosses_real_maps(
+    name: str, data_dir: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DYNASTAR_DATA", str(data_dir))
+    scenario = load_scenario(EXAMPLES / f"{name}.toml")
+    assert scenario.obstacles
+    assert scenario.movers
+    check_lanes(scenario)
+    arrives(scenario)
