@@ -1,4 +1,4 @@
-"""Episode -> numbers: what a mission came to, in the terms of Table III and of benchmarks like it."""
+"""Episode -> numbers: what a mission came to, in Table III's terms and some more."""
 
 from typing import NamedTuple
 

@@ -21,6 +21,7 @@ REFUSALS = {
     stop_kernels.NO_STOP: "no certified stop",
     stop_kernels.CONTACT: "too fast for the next contact (Eq. 7)",
     stop_kernels.MOVER: "in the way of a mover",
+    stop_kernels.RUN_OVER: "a mover would arrive where it stops",
 }
 
 
@@ -75,6 +76,12 @@ class Choice:
     refused: npt.NDArray[np.int64]
     terms: Floats
     score: Floats
+
+    @property
+    def refused_for_movers(self) -> int:
+        """How many samples were refused because of movers."""
+        codes = stop_kernels.MOVER, stop_kernels.RUN_OVER
+        return sum(self.refusals[REFUSALS[code]] for code in codes)
 
 
 class DynamicWindow:
@@ -173,15 +180,15 @@ class DynamicWindow:
     ) -> Twist | None:
         """A way out for a robot that movers are about to run into, if there is one better than braking.
 
-        Whatever it is, it could stop for everything that stands. A robot at rest stays unless it
-        gets clear: it should not be touched while it moves.
+        Whatever it is, it could stop for everything that stands. While the robot can come to rest
+        before a touch, only a way that stays clear will do: it should not be touched as it moves.
         """
         limits, shape = self.robot.limits, self.robot.footprint
         n = window_kernels.sample_window(
             *twist, 0.0, limits.v_max, limits.omega_max, limits, self.reach, *self._counts,
             self._speeds, self._rates, self._samples,
         )
-        best, gap, braked = window_kernels.evade(
+        best, gap, braked, braking = window_kernels.evade(
             self._samples, n, self._commands, *pose, *twist, limits, self.period, self.reach, 1.0,
             around.field, around.x0, around.y0, around.resolution, shape.vertices, shape.inscribed,
             shape.circumscribed, margins.standing,
@@ -189,7 +196,7 @@ class DynamicWindow:
         )
         if best < 0 or braked > margins.movers or gap < braked + 0.05:
             return None
-        if twist == (0.0, 0.0) and gap < 0.5 * margins.movers:
+        if braking > 0.0 and gap < 2.0 * margins.movers:
             return None
         return Twist(*self._commands[best].tolist())
 

@@ -6,7 +6,7 @@ from numba import njit
 
 from dynastar.dwa.clearance_kernels import footprint_clearance
 
-ADMISSIBLE, NO_STOP, CONTACT, MOVER = 0, 1, 2, 3
+ADMISSIBLE, NO_STOP, CONTACT, MOVER, RUN_OVER = 0, 1, 2, 3, 4
 LEAVING = 0.2  # a footprint that is too near already has to gain this much clearance per metre
 WAYS = (1.0, 0.0, -1.0)  # a mover keeps its velocity, stands, or turns back
 
@@ -77,28 +77,26 @@ def position_on_stop(x, y, theta, v0, omega0, v, omega, ramp, stop, t):
 
 
 @njit(cache=True)
-def movers_stay_clear(movers, spread, linger, radius, x, y, theta, v0, omega0, v, omega, ramp, stop,
+def movers_stay_clear(movers, spread, radius, x, y, theta, v0, omega0, v, omega, ramp, stop, until,
                       ahead):
-    """Whether no mover comes into contact before the robot rests, nor soon after.
+    """Whether no mover comes into contact within ``until`` seconds of a motion.
 
     ``movers`` (m, 6) are x, y, vx, vy, radius, top speed as of now; the robot starts ``ahead``
     seconds from now, changes to (v, omega) over ``ramp`` seconds and comes to rest in ``stop``
-    more. Until then a mover may keep its velocity, stand or turn back, each with ``spread`` (m/s)
-    more every second; where the robot rests, one that keeps its velocity may not arrive for
-    ``linger`` seconds. A mover that is too near already may not be approached further.
+    more. A mover may keep its velocity, stand or turn back, each with ``spread`` (m/s) more every
+    second while the robot moves. One that is too near already may not be approached further.
     """
-    moves = ramp + stop
+    moves = min(ramp + stop, until)
+    n = max(2, int(math.ceil(until / 0.15)))
     for m in range(len(movers)):
         gap_now = math.hypot(movers[m, 0] - x, movers[m, 1] - y)
         need = radius + movers[m, 4]
         speed = math.hypot(movers[m, 2], movers[m, 3])
         top = max(speed, movers[m, 5])
-        if gap_now > need + (top + spread + max(abs(v), abs(v0))) * (moves + linger + ahead):
+        if gap_now > need + top * (until + ahead) + (spread + max(abs(v), abs(v0))) * (moves + ahead):
             continue
         for way in WAYS:
             scale = way * top / speed if way != 0.0 and speed > 1e-3 else 0.0
-            until = moves + linger if way > 0.0 else moves
-            n = max(2, int(math.ceil(until / 0.15)))
             last = gap_now
             for k in range(n + 1):
                 t = until * k / n
@@ -122,7 +120,8 @@ def certify(field, x0, y0, resolution, vertices, inscribed, circumscribed, margi
     """Why (x, y, theta) with speeds (v0, omega0) may not be commanded (v, omega), or ADMISSIBLE.
 
     Over one period the speeds change, each at its own limit; then both ramp to zero in proportion,
-    along one arc. ``allowed`` is the clearance at the start.
+    along one arc. ``allowed`` is the clearance at the start. RUN_OVER: the robot could come to rest
+    in time, and a mover would arrive there within ``linger`` seconds.
     """
     _, _, a_v, a_w, b_v, b_w, _ = limits
     parts = 2
@@ -144,11 +143,15 @@ def certify(field, x0, y0, resolution, vertices, inscribed, circumscribed, margi
         0.5 * stop * now_v, 0.5 * stop * now_w, allowed,
     ):
         return NO_STOP
-    if len(movers) > 0 and not movers_stay_clear(
-        movers, spread, linger, circumscribed + mover_margin, x, y, theta, v0, omega0, now_v, now_w,
-        period, stop, ahead,
-    ):
+    if len(movers) == 0:
+        return ADMISSIBLE
+    radius = circumscribed + mover_margin
+    if not movers_stay_clear(movers, spread, radius, x, y, theta, v0, omega0, now_v, now_w, period,
+                             stop, period + stop, ahead):
         return MOVER
+    if not movers_stay_clear(movers, spread, radius, x, y, theta, v0, omega0, now_v, now_w, period,
+                             stop, period + stop + linger, ahead):
+        return RUN_OVER
     return ADMISSIBLE
 
 

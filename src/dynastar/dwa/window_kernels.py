@@ -8,12 +8,17 @@ from numba import njit
 from dynastar.dwa.rollout_kernels import normalise_and_choose, roll_out
 from dynastar.dwa.stop_kernels import (
     ADMISSIBLE,
+    RUN_OVER,
     arc,
     arc_is_clear,
     certify,
+    movers_stay_clear,
     position_on_stop,
     slew,
 )
+
+
+HELD = 1e9  # s of a stop so slow that the speeds are held
 
 
 @njit(cache=True)
@@ -83,6 +88,14 @@ def evaluate(samples, n, commands, terms, refused, score, x, y, theta, v, omega,
                 movers, spread, linger, mover_margin, ahead, x, y, theta, v, omega, next_v, next_w,
                 limits, period,
             )
+        if code == RUN_OVER:
+            # It may not rest there; it may pass, if it gets across before any mover comes.
+            stop = max(abs(next_v) / b_v, abs(next_w) / b_w)
+            if movers_stay_clear(
+                movers, spread, circumscribed + mover_margin, x, y, theta, v, omega, wanted_v,
+                wanted_w, reach, HELD, stop + linger, ahead,
+            ):
+                code = ADMISSIBLE
         refused[i] = code
     return normalise_and_choose(terms[:n], refused[:n], weights, by_sum, score[:n])
 
@@ -109,14 +122,15 @@ def evade(samples, n, commands, x, y, theta, v, omega, limits, period, reach, ho
           resolution, vertices, inscribed, circumscribed, margin, allowed, movers, ahead, seconds):
     """The sample that keeps movers farthest away among those that could stop for what stands.
 
-    Returns its index (-1 if there is none), its smallest gap (m) and that of a full brake. A sample
-    is held for ``hold`` seconds once reached, then braked.
+    Returns its index (-1 if there is none), its smallest gap (m), that of a full brake, and that of
+    a full brake until it rests. A sample is held for ``hold`` seconds once reached, then braked.
     """
     _, _, a_v, a_w, b_v, b_w, _ = limits
     nobody = movers[:0]
     share = min(1.0, period / reach)
     stop = max(abs(v) / b_v, abs(omega) / b_w)
     braked = least_gap(movers, circumscribed, ahead, seconds, x, y, theta, v, omega, v, omega, 0.0, stop)
+    braking = least_gap(movers, circumscribed, ahead, stop, x, y, theta, v, omega, v, omega, 0.0, stop)
     best, best_gap = -1, -np.inf
     for i in range(n):
         wanted_v, wanted_w = samples[i]
@@ -143,4 +157,4 @@ def evade(samples, n, commands, x, y, theta, v, omega, limits, period, reach, ho
         )
         if code == ADMISSIBLE:
             best, best_gap = i, gap
-    return best, best_gap, braked
+    return best, best_gap, braked, braking

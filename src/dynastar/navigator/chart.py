@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.clearance import inflate
-from dynastar.errors import GoalOccupied, NoPath
+from dynastar.errors import GoalOccupied, NoPath, StartOccupied
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.obstacles import Known, ObstacleLayer
@@ -78,12 +78,19 @@ class Chart:
             self._mark(changed, np.zeros(2, np.int64))
 
     def plan(self, start: tuple[float, float], goal: tuple[float, float], explored: bool) -> Plan:
-        """The roomiest plan there is; raises what the tightest planner raises if there is none."""
+        """The roomiest plan there is; raises what the tightest planner raises if there is none.
+
+        A start too close to something for a roomy planner has to be led out of that by a way that
+        the tightest can follow.
+        """
         for planner in self.planners[:-1]:
             try:
-                return planner.plan(start, goal, explored=explored)
-            except (NoPath, GoalOccupied):
+                plan = planner.plan(start, goal, explored=explored)
+            except (NoPath, GoalOccupied, StartOccupied):
                 continue
+            lead = plan.path.resampled(0.0, plan.clear_from, 1e9)
+            if plan.clear_from == 0.0 or self.blocked_at(lead) is None:
+                return plan
         return self.planners[-1].plan(start, goal, explored=explored)
 
     def blocked_at(self, points: npt.NDArray[np.float64]) -> float | None:

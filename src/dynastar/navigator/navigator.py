@@ -233,7 +233,7 @@ class Navigator:
                target: tuple[float, float]) -> None:
         """Says what is going on, and starts a recovery when nothing is."""
         now = state.stamp
-        held_up = choice.refusals["in the way of a mover"] > 0
+        held_up = choice.refused_for_movers > 0
         slow = abs(state.twist.v) < 0.05 and (choice.command is None or abs(choice.command.v) < 0.05)
         if held_up and slow and not aligning:
             if self._waiting_since is None:

@@ -17,15 +17,16 @@ from dynastar.io.files import written_aside
 from dynastar.metrics import measure
 from dynastar.viewer import palette, scene
 from dynastar.viewer.canvas import FINE, Canvas, letters_font
+from dynastar.viewer.view import mission_view
 
 Floats = npt.NDArray[np.float64]
 
 WIDTH, HEIGHT, STRIP = 760, 620, 26  # final pixels, at most, of the world and of each strip
 HOLD = 2.0  # s that the last frame stays
-COLOURS, NEAR = 64, 16
 NAMED = (
-    *(palette.FREE, palette.UNKNOWN, palette.OCCUPIED, palette.OBSTACLE),
-    *(palette.MOVER, palette.DRIVEN, palette.FIRST_PATH, palette.INK),
+    *(palette.FREE, palette.UNKNOWN, palette.OCCUPIED, palette.OBSTACLE, palette.OBSTACLE_EDGE),
+    *(palette.KEEPOUT, palette.SLOW, palette.MOVER, palette.MOVER_EDGE, palette.DRIVEN),
+    *(palette.ROBOT, palette.FIRST_PATH, palette.CONTACT, palette.INK, palette.FAINT_INK),
 )
 SMALLEST_ROBOT = 4.0  # final pixels of radius, below which a ring shows where it is
 
@@ -71,7 +72,7 @@ def animate_episode(
     shown = pace(episode.trajectory.times, fps, max_seconds)
     frames = _frames(episode, shown)
     first = next(frames)
-    colours = _colours(episode, shown)
+    colours = _colours()
     rest = tqdm(frames, "animation", len(shown.ticks) - 1, disable=not progress, unit="frame")
     durations = [shown.frame_ms] * (len(shown.ticks) - 1) + [round(1000 * HOLD)]
     with written_aside(path) as aside:
@@ -113,16 +114,16 @@ def background(episode: Episode) -> Canvas:
     """All that stands still: map, unmapped obstacles, start, goals, and what the colours mean."""
     plans = [plan.points for plan in episode.plans]
     places = [episode.trajectory.poses[:, :2], episode.goals[:, :2], *plans]
-    view = scene.mission_view(episode.grid, places)
+    view = mission_view(episode.grid, places)
     canvas = Canvas(view, WIDTH, HEIGHT, STRIP)
     canvas.show_map(episode.grid)
     for polygon in episode.obstacles:
         canvas.polygon(polygon, palette.OBSTACLE, palette.OBSTACLE_EDGE)
     canvas.disc(episode.trajectory.poses[0, :2], 3 * FINE / canvas.scale, None, palette.INK)
-    canvas.badge(episode.trajectory.poses[0, :2], "S")
-    for number, goal in enumerate(episode.goals[:, :2], 1):
+    for goal in episode.goals[:, :2]:
         canvas.disc(goal, episode.goal_tolerance, None, palette.INK)
-        canvas.badge(goal, "G" if len(episode.goals) == 1 else f"G{number}")
+    for place, away, letters in scene.marks(episode):
+        canvas.badge(place, away, letters)
     canvas.band()
     canvas.band(bottom=True)
     _draw_key(canvas, episode)
@@ -178,15 +179,15 @@ def _draw_words(frame: Canvas, episode: Episode, tick: int, speedup: int) -> Non
     frame.words(f"{clock}   ×{speedup}" if speedup > 1 else clock, palette.FAINT_INK, right=True)
 
 
-def _colours(episode: Episode, shown: Pace) -> Image.Image:
-    """One set of colours for all frames: those of the last one, the named ones unmixed."""
-    last = shown._replace(ticks=shown.ticks[[0, -1]])
-    *_, full = _frames(episode, last)
-    image = full.quantize(COLOURS, dither=Image.Dither.NONE)
-    table = np.array(image.getpalette(), dtype=np.int64).reshape(-1, 3)
-    for name in NAMED:
-        colour = np.array(getrgb(name))
-        gap = np.abs(table - colour).sum(axis=1)
-        table[(gap < NEAR) | (gap == gap.min())] = colour
-    image.putpalette(table.astype(np.uint8).tobytes())
+def _colours() -> Image.Image:
+    """A picture that holds the colours of all frames: the named ones, and what their edges mix."""
+    steps = dict.fromkeys((palette.UNKNOWN, palette.OCCUPIED), 4) | {palette.FREE: 8}
+    named = [np.array(getrgb(name)) for name in NAMED]
+    table = list(named)
+    for ground, count in steps.items():
+        under = np.array(getrgb(ground))
+        for over in named:
+            table += [under + (over - under) * part // count for part in range(1, count)]
+    image = Image.new("P", (1, 1))
+    image.putpalette(np.unique(np.array(table, dtype=np.uint8), axis=0).tobytes())
     return image

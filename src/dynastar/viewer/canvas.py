@@ -13,8 +13,8 @@ from PIL.ImageColor import getrgb
 
 from dynastar.grid import OccupancyGrid
 from dynastar.path import Path
-from dynastar.viewer import palette, scene
-from dynastar.viewer.scene import View
+from dynastar.viewer import palette
+from dynastar.viewer.view import LARGEST_IMAGE, View, map_image
 
 Floats = npt.NDArray[np.float64]
 Pixels = list[tuple[float, float]]
@@ -59,13 +59,14 @@ class Canvas:
     def show_map(self, grid: OccupancyGrid) -> None:
         """The map, placed by its own origin and yaw."""
         finest = round(grid.resolution * max(grid.rows, grid.columns) * self.scale)
-        window = scene.map_image(grid, self.view, max(1, min(finest, scene.LARGEST_IMAGE)))
+        window = map_image(grid, self.view, max(1, min(finest, LARGEST_IMAGE)))
         if window.rgb.size == 0:
             return
         height, width = window.rgb.shape[:2]
         rows, columns = window.row_end - window.row, window.column_end - window.column
-        cells = [(0, 0), (0, columns), (rows, 0)]
-        corners = grid.frame.points_to_world(np.array(cells) + (window.row, window.column))
+        cells = np.array([(0, 0), (0, columns), (rows, 0)])
+        cells += np.array([window.row, window.column])
+        corners = grid.frame.points_to_world(cells)
         to_pixels = cv2.getAffineTransform(
             np.array([(0, 0), (width, 0), (0, height)], dtype=np.float32) - np.float32(0.5),
             np.array(self.pixels(corners), dtype=np.float32) - np.float32(0.5),
@@ -124,10 +125,10 @@ class Canvas:
             ends = (column - arm, row - sign * arm, column + arm, row + sign * arm)
             self.pen.line(ends, fill=colour, width=round(FINE * width))
 
-    def badge(self, centre: Floats, letters: str) -> None:
-        """Letters in a dark disc, a little above and to the right of a place."""
+    def badge(self, centre: Floats, away: Floats, letters: str) -> None:
+        """Letters in a dark disc, some pixels the way ``away`` (2,) from a place."""
         ((column, row),) = self.pixels(np.asarray(centre, dtype=float).reshape(1, 2))
-        at = (column + 13 * FINE, row - 13 * FINE)
+        at = (column + 18 * FINE * float(away[0]), row - 18 * FINE * float(away[1]))
         self.pen.line((column, row, *at), fill=palette.INK, width=FINE)
         reach = (7 if len(letters) == 1 else 9) * FINE
         box = (at[0] - reach, at[1] - reach, at[0] + reach, at[1] + reach)

@@ -20,7 +20,7 @@ from dynastar.grid import OccupancyGrid
 from dynastar.io.files import written_aside
 from dynastar.metrics import Metrics, measure
 from dynastar.viewer import layers, palette, scene
-from dynastar.viewer.scene import View
+from dynastar.viewer.view import View, known_view, mission_view
 
 if TYPE_CHECKING:
     from dynastar.planning import Plan
@@ -33,8 +33,8 @@ NARROWEST, LOWEST = 5.5, 1.3  # inches: the picture, and the room for the map
 
 
 def draw_map(grid: OccupancyGrid, axes: Axes, view: View | None = None) -> list[Artist]:
-    """Draws ``grid`` into ``axes``, in metres, whole or what ``view`` shows; returns legend entries."""
-    entries = layers.show_map(axes, grid, view or scene.known_view(grid))
+    """Draws ``grid`` into ``axes`` in metres, all or what ``view`` shows; gives legend entries."""
+    entries = layers.show_map(axes, grid, view or known_view(grid))
     axes.set_xlabel("x, m", fontsize=8, color=palette.INK)
     axes.set_ylabel("y, m", fontsize=8, color=palette.INK)
     axes.tick_params(labelsize=8, colors=palette.INK, width=0.6, length=3)
@@ -52,22 +52,23 @@ def draw_plan(
     InputError for another suffix.
     """
     points = plan.path.points
-    view = scene.mission_view(grid, [points, plan.grid_path.points])
+    view = mission_view(grid, [points, plan.grid_path.points])
     figure, axes = _sheet()
     entries = draw_map(grid, axes, view)
     if plan.explored is not None:
         cells = np.asarray(plan.explored)
         entries += layers.show_explored(axes, cells, grid.frame, f"explored, {plan.expanded} cells")
-    grid_style = {"color": palette.LATER_PATHS[1], "linewidth": 1.6}
-    path_style = {"color": palette.FIRST_PATH, "linewidth": 2.0}
+    grid_style: layers.Style = {"color": palette.LATER_PATHS[1], "linewidth": 1.6}
+    path_style: layers.Style = {"color": palette.FIRST_PATH, "linewidth": 2.0}
     axes.plot(*plan.grid_path.points.T, zorder=4, **grid_style)
     axes.plot(*points.T, zorder=5, **path_style)
     entries += [
         Line2D([], [], label=f"grid path, {plan.grid_path.length:.2f} m", **grid_style),
         Line2D([], [], label=f"smoothed path, {plan.path.length:.2f} m", **path_style),
     ]
-    layers.mark(axes, points[0], "S")
-    layers.mark(axes, points[-1], "G")
+    reach = 0.03 * view.diagonal
+    layers.mark(axes, points[0], -scene.setting_out(points, reach), "S")
+    layers.mark(axes, points[-1], -scene.setting_out(points[::-1], reach), "G")
     turns = scene.count_words(plan.path.turns, "turning point")
     detail = f"{plan.path.length:.2f} m · {turns} · {plan.expanded} cells expanded"
     words = (f"Path planned by {plan.planner}", f"{detail} · {plan.time_ms:.1f} ms")
@@ -83,7 +84,7 @@ def draw_episode(episode: Episode, path: str | Path, width: float = 9.0, dpi: in
     """
     metrics = measure(episode)
     plans = [plan.points for plan in episode.plans]
-    view = scene.mission_view(
+    view = mission_view(
         episode.grid, [episode.trajectory.poses[:, :2], episode.goals[:, :2], *plans]
     )
     figure, axes = _sheet()
@@ -178,7 +179,7 @@ def _speed_bar(
     bar = figure.colorbar(speed, cax=figure.add_axes(box))
     bar.set_label("speed, m/s", fontsize=8, color=palette.INK)
     bar.ax.tick_params(labelsize=8, colors=palette.INK, width=0.6, length=3)
-    bar.outline.set_visible(False)  # type: ignore[operator]
+    bar.outline.set_visible(False)
 
 
 def _save(figure: Figure, path: str | Path, dpi: int) -> None:

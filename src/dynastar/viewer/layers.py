@@ -1,6 +1,7 @@
 """The layers of a picture, each drawn into an Axes in metres; each returns its legend entries."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -16,11 +17,12 @@ from matplotlib.transforms import Affine2D
 from dynastar.episode import Episode, PlanRecord
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.viewer import palette, scene
-from dynastar.viewer.scene import View
+from dynastar.viewer.view import LARGEST_IMAGE, View, averaged_down, map_image
 
 Floats = npt.NDArray[np.float64]
+Style = dict[str, Any]  # what matplotlib's artists take by name
 
-FOOTPRINTS = 24  # about how many are drawn along the way
+FOOTPRINTS = 30  # about how many are drawn along the way
 NICE_SECONDS = (0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600)
 HALO = [withStroke(linewidth=2.2, foreground="white")]
 
@@ -36,7 +38,7 @@ def _place_image(axes: Axes, image: npt.NDArray[np.uint8], frame: GridFrame, box
 def show_map(axes: Axes, grid: OccupancyGrid, view: View) -> list[Artist]:
     """The map; what lies outside of it looks as unknown as it is."""
     axes.set_facecolor(palette.UNKNOWN)
-    window = scene.map_image(grid, view)
+    window = map_image(grid, view)
     if window.rgb.size:
         _place_image(axes, window.rgb, grid.frame, np.array(window[1:], dtype=float))
     axes.set(xlim=(view.x_low, view.x_high), ylim=(view.y_low, view.y_high), aspect="equal")
@@ -61,7 +63,7 @@ def show_explored(
     rows, columns = (cells - low).T
     image[:, :, :3] = [round(255 * part) for part in to_rgb(palette.EXPLORED)]
     image[rows, columns, 3] = 255
-    image = scene.averaged_down(image, scene.LARGEST_IMAGE)
+    image = averaged_down(image, LARGEST_IMAGE)
     _place_image(axes, image, frame, np.array([*low, *high], dtype=float))
     return [_patch(palette.EXPLORED, label)]
 
@@ -70,44 +72,52 @@ def show_obstacles(axes: Axes, obstacles: Sequence[Floats]) -> list[Artist]:
     """The polygons that the map does not have."""
     if len(obstacles) == 0:
         return []
-    style = {"facecolor": palette.OBSTACLE, "edgecolor": palette.OBSTACLE_EDGE, "linewidth": 0.8}
+    style: Style = {
+        "facecolor": palette.OBSTACLE,
+        "edgecolor": palette.OBSTACLE_EDGE,
+        "linewidth": 0.8,
+    }
     axes.add_collection(PolyCollection(list(obstacles), zorder=2, **style))
     return [Patch(label="unmapped obstacle", **style)]
 
 
 def show_plans(axes: Axes, plans: Sequence[PlanRecord], view: View) -> list[Artist]:
-    """The global paths: the first dotted, later ones dashed, numbered where they begin."""
-    entries: list[Artist] = []
-    for index, plan in enumerate(plans):
-        if len(plan.points) == 0:
-            continue
-        if index == 0:
-            style = {"color": palette.FIRST_PATH, "linestyle": (0, (1, 1.2)), "linewidth": 1.6}
-            label = "global path"
-        else:
-            colour = palette.later_path(index - 1, len(plans) - 1)
-            style = {"color": colour, "linestyle": (0, (4, 1.5)), "linewidth": 1.4}
-            label = "global path after replanning"
-        axes.plot(*plan.points.T, zorder=4, **style)
-        if index in (0, 1):
-            entries.append(Line2D([], [], label=label, **style))
+    """The global paths: the first dotted, later ones dashed where they differ, all numbered."""
+    if not plans:
+        return []
+    first: Style = {"color": palette.FIRST_PATH, "linestyle": (0, (1, 1.2)), "linewidth": 1.6}
+    later: Style = {"color": palette.LATER_PATHS[0], "linestyle": (0, (4, 1.5)), "linewidth": 1.4}
+    axes.plot(*plans[0].points.T, zorder=4.5, **first)
+    entries: list[Artist] = [Line2D([], [], label="global path", **first)]
+    changes = scene.changes([plan.points for plan in plans], 0.005 * view.diagonal)
+    for index, stretches in enumerate(changes[1:]):
+        later["color"] = palette.later_path(index, len(plans) - 1)
+        for stretch in stretches:
+            axes.plot(*stretch.T, zorder=4, **later)
     if len(plans) > 1:
-        for place, number in scene.plan_labels(plans, 0.02 * view.diagonal):
-            axes.annotate(
-                number,
-                place,
-                xytext=(-7, 8),
-                textcoords="offset points",
-                ha="center",
-                va="center",
-                fontsize=7,
-                color=palette.FIRST_PATH,
-                fontweight="bold",
-                path_effects=HALO,
-                zorder=9,
-                annotation_clip=True,
-            )
+        later["color"] = palette.LATER_PATHS[0]
+        entries.append(Line2D([], [], label="replanned, where it differs", **later))
+        for place, way, number in scene.plan_labels(plans, 0.02 * view.diagonal):
+            _number(axes, place, way, number)
     return entries
+
+
+def _number(axes: Axes, place: Floats, way: Floats, number: str) -> None:
+    """A small number to the left of a line that sets out from ``place`` along ``way``."""
+    axes.annotate(
+        number,
+        tuple(place),
+        xytext=(-10.0 * way[1], 10.0 * way[0]),
+        textcoords="offset points",
+        ha="center",
+        va="center",
+        fontsize=7,
+        color=palette.FIRST_PATH,
+        fontweight="bold",
+        path_effects=HALO,
+        zorder=9,
+        annotation_clip=True,
+    )
 
 
 def show_movers(axes: Axes, episode: Episode, view: View) -> list[Artist]:
@@ -125,7 +135,7 @@ def show_movers(axes: Axes, episode: Episode, view: View) -> list[Artist]:
         return []
     x, y = np.concatenate(dots).T
     axes.plot(x, y, ".", color=palette.MOVER, markersize=2.6, markeredgewidth=0, zorder=3)
-    style = {"facecolor": palette.MOVER, "edgecolor": palette.MOVER_EDGE, "linewidth": 0.7}
+    style: Style = {"facecolor": palette.MOVER, "edgecolor": palette.MOVER_EDGE, "linewidth": 0.7}
     axes.add_collection(PatchCollection(discs, zorder=7, **style))
     disc = Line2D([], [], linestyle="none", marker="o", markersize=6)
     disc.set(markerfacecolor=palette.MOVER, markeredgecolor=palette.MOVER_EDGE)
@@ -156,7 +166,7 @@ def show_driven(axes: Axes, episode: Episode) -> tuple[LineCollection, list[Arti
     step = next((s for s in NICE_SECONDS if seconds[-1] / s <= FOOTPRINTS), NICE_SECONDS[-1])
     ticks = np.searchsorted(seconds, np.arange(step, seconds[-1], step))
     shapes = [scene.outline(episode, driven.poses[tick]) for tick in ticks]
-    style = {"facecolor": "none", "edgecolor": palette.FAINT_INK, "linewidth": 0.5}
+    style: Style = {"facecolor": "none", "edgecolor": palette.FAINT_INK, "linewidth": 0.5}
     axes.add_collection(PolyCollection(shapes, zorder=6, **style))
     for tick in (0, -1):
         show_robot(axes, episode, driven.poses[tick])
@@ -177,13 +187,12 @@ def show_robot(axes: Axes, episode: Episode, pose: Floats) -> None:
 def show_goals(axes: Axes, episode: Episode) -> list[Artist]:
     """S where the robot started, and G (G1, G2, ... if several) with the tolerance round it."""
     goals = episode.goals[:, :2]
-    ring = {"facecolor": "none", "edgecolor": palette.INK, "linewidth": 0.9}
-    for number, goal in enumerate(goals, 1):
+    ring: Style = {"facecolor": "none", "edgecolor": palette.INK, "linewidth": 0.9}
+    for goal in goals:
         axes.add_patch(Circle(tuple(goal), episode.goal_tolerance, zorder=8, **ring))
         axes.plot(*goal, "+", color=palette.INK, markersize=4, markeredgewidth=0.9, zorder=8)
-        mark(axes, goal, "G" if len(goals) == 1 else f"G{number}")
-    if len(episode.trajectory.poses):
-        mark(axes, episode.trajectory.poses[0, :2], "S")
+    for place, away, letters in scene.marks(episode):
+        mark(axes, place, away, letters)
     return [_ring("none", palette.INK, "goal and its tolerance")]
 
 
@@ -199,12 +208,12 @@ def show_contact(axes: Axes, episode: Episode) -> list[Artist]:
     return [cross]
 
 
-def mark(axes: Axes, place: Floats, letters: str) -> None:
-    """Letters in a dark disc beside a place, tied to it by a line."""
+def mark(axes: Axes, place: Floats, away: Floats, letters: str) -> None:
+    """Letters in a dark disc, tied to a place by a line that leads the way ``away`` from it."""
     axes.annotate(
         letters,
         tuple(place),
-        xytext=(11, 11),
+        xytext=(17.0 * away[0], 17.0 * away[1]),
         textcoords="offset points",
         ha="center",
         va="center",

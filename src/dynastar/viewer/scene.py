@@ -1,138 +1,19 @@
-"""What there is to show of a map and a mission, before any drawing: arrays in metres and words."""
+"""What a mission's picture says, before any drawing: shapes and tracks in metres, and words."""
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
-import cv2
 import numpy as np
 import numpy.typing as npt
-from matplotlib.colors import to_rgb
 
 from dynastar.episode import Episode, PlanRecord
-from dynastar.grid import GridFrame, OccupancyGrid
+from dynastar.grid import GridFrame
 from dynastar.metrics import Metrics
 from dynastar.path import Path
-from dynastar.viewer import palette
 
 Floats = npt.NDArray[np.float64]
-Picture = npt.NDArray[np.uint8]
 
-LARGEST_IMAGE = 3000  # pixels a side of a map's picture; larger ones are averaged down
-CLOSE_UP_BELOW = 0.35  # share of the map's area under which only the mission's part is shown
 JUMP_SPEED = 6.0  # m/s; a mover that is faster between two ticks has jumped
-
-
-class View(NamedTuple):
-    """The stretch of the world that a picture shows, in metres."""
-
-    x_low: float
-    y_low: float
-    x_high: float
-    y_high: float
-
-    @property
-    def width(self) -> float:
-        """Along x, in metres."""
-        return self.x_high - self.x_low
-
-    @property
-    def height(self) -> float:
-        """Along y, in metres."""
-        return self.y_high - self.y_low
-
-    @property
-    def diagonal(self) -> float:
-        """Corner to corner, in metres."""
-        return math.hypot(self.width, self.height)
-
-    def grown(self, margin: float) -> "View":
-        """The view with ``margin`` metres more on every side."""
-        return View(
-            self.x_low - margin, self.y_low - margin, self.x_high + margin, self.y_high + margin
-        )
-
-    def within(self, other: "View") -> "View":
-        """The part of the view that lies in ``other``."""
-        return View(
-            max(self.x_low, other.x_low),
-            max(self.y_low, other.y_low),
-            min(self.x_high, other.x_high),
-            min(self.y_high, other.y_high),
-        )
-
-
-def view_of(points: Floats) -> View:
-    """The smallest view of points (n >= 1, 2)."""
-    return View(*points.min(axis=0).tolist(), *points.max(axis=0).tolist())
-
-
-def known_view(grid: OccupancyGrid) -> View:
-    """The view of all that the map knows, with a little of the unknown round it."""
-    known = ~grid.unknown
-    rows, columns = np.flatnonzero(known.any(axis=1)), np.flatnonzero(known.any(axis=0))
-    if len(rows) == 0:
-        rows, columns = np.arange(grid.rows), np.arange(grid.columns)
-    top, right = rows[-1] + 1, columns[-1] + 1
-    corners = [(rows[0], columns[0]), (rows[0], right), (top, columns[0]), (top, right)]
-    whole = [(0, 0), (0, grid.columns), (grid.rows, 0), (grid.rows, grid.columns)]
-    known_part = view_of(grid.frame.points_to_world(np.array(corners)))
-    margin = 0.02 * known_part.diagonal
-    return known_part.grown(margin).within(view_of(grid.frame.points_to_world(np.array(whole))))
-
-
-def mission_view(grid: OccupancyGrid, places: Sequence[Floats]) -> View:
-    """The whole map, or a close-up of ``places`` (each (n, 2)) where they take but little of it."""
-    everything = known_view(grid)
-    points = np.concatenate([np.asarray(place, dtype=float).reshape(-1, 2) for place in places])
-    points = points[np.isfinite(points).all(axis=1)]
-    if len(points) == 0:
-        return everything
-    places_view = view_of(points)
-    close_up = places_view.grown(max(2.0, 0.12 * places_view.diagonal)).within(everything)
-    small = close_up.width * close_up.height < CLOSE_UP_BELOW * everything.width * everything.height
-    return close_up if small and min(close_up.width, close_up.height) > 0 else everything
-
-
-class MapImage(NamedTuple):
-    """Colours of a map's window: ``rgb`` (n, m, 3) spans cells [row, row_end) x [column, ...)."""
-
-    rgb: Picture
-    row: int
-    column: int
-    row_end: int
-    column_end: int
-
-
-def map_image(grid: OccupancyGrid, view: View, largest: int = LARGEST_IMAGE) -> MapImage:
-    """The map's colours where ``view`` shows it, averaged down to ``largest`` pixels a side."""
-    x0, y0, x1, y1 = view
-    corners = grid.frame.points_to_grid(np.array([(x0, y0), (x1, y0), (x0, y1), (x1, y1)]))
-    row, column = np.maximum(np.floor(corners.min(axis=0)).astype(int), 0)
-    row_end, column_end = np.minimum(
-        np.ceil(corners.max(axis=0)).astype(int), (grid.rows, grid.columns)
-    )
-    window = (slice(row, row_end), slice(column, column_end))
-    part = OccupancyGrid(grid.values[window], grid.frame)
-    kinds = part.unknown.astype(np.uint8)
-    if grid.speed_limit is not None:
-        kinds[np.isfinite(grid.speed_limit[window]) & (kinds == 0)] = 2
-    if grid.keepout is not None:
-        kinds[grid.keepout[window]] = 3
-    kinds[part.occupied] = 4
-    names = (palette.FREE, palette.UNKNOWN, palette.SLOW, palette.KEEPOUT, palette.OCCUPIED)
-    colours = np.array([[round(255 * c) for c in to_rgb(name)] for name in names], dtype=np.uint8)
-    rgb = averaged_down(colours[kinds], largest)
-    return MapImage(rgb, int(row), int(column), int(row_end), int(column_end))
-
-
-def averaged_down(image: Picture, largest: int) -> Picture:
-    """The image, or its averages where a side has more than ``largest`` pixels."""
-    factor = largest / max(image.shape[:2])
-    if factor >= 1.0:
-        return image
-    height, width = (max(1, round(factor * side)) for side in image.shape[:2])
-    return np.asarray(cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA), np.uint8)
 
 
 def explored_frame(episode: Episode) -> GridFrame:
@@ -147,7 +28,8 @@ def outline(episode: Episode, pose: Floats) -> Floats:
         angles = np.linspace(0.0, 2.0 * np.pi, 32, endpoint=False)
         corners = episode.radius * np.column_stack([np.cos(angles), np.sin(angles)])
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
-    return corners @ np.array([[cos, sin], [-sin, cos]]) + pose[:2]
+    turn = np.array([[cos, sin], [-sin, cos]])
+    return np.asarray(corners @ turn + pose[:2], dtype=np.float64)
 
 
 def nose(episode: Episode, pose: Floats) -> Floats:
@@ -157,9 +39,61 @@ def nose(episode: Episode, pose: Floats) -> Floats:
     return np.array([pose[:2], pose[:2] + front])
 
 
-def plan_labels(plans: Sequence[PlanRecord], apart: float) -> list[tuple[Floats, str]]:
-    """Where plans begin and their numbers from 1; those begun within ``apart`` metres share one."""
-    groups: list[tuple[Floats, list[int]]] = []
+def setting_out(points: Floats, reach: float) -> Floats:
+    """The unit vector (2,) from the start of a line (n, 2) to its point ``reach`` metres on."""
+    line = Path(points)
+    step = np.array(line.at(reach)) - line.points[0]
+    length = float(np.hypot(*step))
+    return step / length if length > 1e-6 else np.array([-math.sqrt(0.5), -math.sqrt(0.5)])
+
+
+def marks(episode: Episode) -> list[tuple[Floats, Floats, str]]:
+    """Start and goals: where, the way (2,) to where the letters hide least, and the letters."""
+    goals, line = episode.goals[:, :2], episode.trajectory.poses[:, :2]
+    aside = np.full(2, math.sqrt(0.5))
+    names = ["G"] if len(goals) == 1 else [f"G{number}" for number in range(1, len(goals) + 1)]
+    result = [(goal, aside, name) for goal, name in zip(goals, names, strict=True)]
+    if len(line) == 0:
+        return result
+    reach = max(2.0, 4.0 * episode.radius)
+    if result and episode.outcome == "arrived":
+        result[-1] = (goals[-1], -setting_out(line[::-1], reach), names[-1])
+    return [(line[0], -setting_out(line, reach), "S"), *result]
+
+
+def changes(plans: Sequence[Floats], tolerance: float) -> list[list[Floats]]:
+    """Of each plan (n, 2) the stretches farther than ``tolerance`` metres from all plans before.
+
+    A stretch is (k >= 2, 2), with the points beside it that connect it to the line it leaves.
+    """
+    drawn = np.empty((0, 2))
+    result: list[list[Floats]] = []
+    for points in plans:
+        if len(points) == 0:
+            result.append([])
+            continue
+        line = Path(points)
+        samples = line.resampled(0.0, line.length, 0.5 * tolerance)
+        new = np.array([_is_apart(sample, drawn, tolerance) for sample in samples])
+        new[1:-1] |= new[2:] | new[:-2]
+        ends = np.flatnonzero(new[1:] != new[:-1]) + 1
+        pieces = zip(np.split(samples, ends), np.split(new, ends), strict=True)
+        kept = [piece for piece, is_new in pieces if is_new[0] and len(piece) > 4]
+        result.append(kept)
+        drawn = np.concatenate([drawn, *kept])
+    return result
+
+
+def _is_apart(point: Floats, others: Floats, tolerance: float) -> bool:
+    return len(others) == 0 or float(np.hypot(*(others - point).T).min()) > tolerance
+
+
+def plan_labels(plans: Sequence[PlanRecord], apart: float) -> list[tuple[Floats, Floats, str]]:
+    """Where plans begin, which way they set out, and their numbers from 1.
+
+    Those begun within ``apart`` metres share a label.
+    """
+    groups: list[tuple[Floats, Floats, list[int]]] = []
     for number, plan in enumerate(plans, 1):
         if len(plan.points) == 0:
             continue
@@ -167,23 +101,21 @@ def plan_labels(plans: Sequence[PlanRecord], apart: float) -> list[tuple[Floats,
         near = (group for group in groups if np.hypot(*(group[0] - begin)) < apart)
         group = next(near, None)
         if group is None:
-            groups.append((begin, [number]))
+            groups.append((begin, setting_out(plan.points, 2.0 * apart), [number]))
         else:
-            group[1].append(number)
-    return [(place, number_words(numbers)) for place, numbers in groups]
+            group[2].append(number)
+    return [(place, way, number_words(numbers)) for place, way, numbers in groups]
 
 
 def number_words(numbers: Sequence[int]) -> str:
-    """Rising numbers in words: "2", "2, 5", "2-4, 6"."""
-    words: list[str] = []
-    first = last = numbers[0]
-    for number in [*numbers[1:], None]:
-        if number == last + 1:
-            last = number
-            continue
-        words.append(f"{first}" if first == last else f"{first}–{last}")
-        if number is not None:
-            first = last = number
+    """Rising numbers in words: "2", "2, 5", "2, 3", "2-4, 6"."""
+    runs: list[list[int]] = []
+    for number in numbers:
+        if runs and number == runs[-1][-1] + 1:
+            runs[-1].append(number)
+        else:
+            runs.append([number])
+    words = [f"{run[0]}–{run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs]
     return ", ".join(words)
 
 
@@ -202,10 +134,11 @@ def track_dots(track: Floats, ticks: Floats, spacing: float) -> Floats:
 
 
 def _legs(track: Floats, ticks: Floats) -> list[Floats]:
-    there = np.isfinite(track).all(axis=1)
-    steps = np.hypot(*np.diff(track, axis=0).T)
-    whole = there[:-1] & there[1:] & (steps <= np.maximum(JUMP_SPEED * np.diff(ticks), 0.3))
-    legs = np.split(track, np.flatnonzero(~whole) + 1)
+    there = np.isfinite(track.sum(axis=1))
+    steps = np.linalg.norm(np.diff(track, axis=0), axis=1)
+    walked = there[1:] & (steps <= np.maximum(JUMP_SPEED * np.diff(ticks), 0.3))
+    broken = np.flatnonzero(~walked)
+    legs = np.split(track, broken + 1)
     return [leg for leg in legs if np.isfinite(leg).all() and len(leg)]
 
 
