@@ -1,3 +1,6 @@
+from collections.abc import Callable
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -104,3 +107,24 @@ def make_episode(ticks: int = 700, outcome: str = "arrived", contact: str = "") 
 @pytest.fixture(scope="session")
 def office() -> Episode:
     return make_episode()
+
+
+@pytest.fixture(scope="session")
+def cut(office: Episode) -> Callable[[int], Episode]:
+    """The office mission's first so many ticks."""
+
+    def first(ticks: int) -> Episode:
+        driven = office.trajectory
+        return replace(
+            office,
+            trajectory=Trajectory(
+                driven.times[:ticks], driven.poses[:ticks], driven.twists[:ticks]
+            ),
+            commands=office.commands[:ticks],
+            clearance=office.clearance[:ticks],
+            command_ms=office.command_ms[:ticks],
+            states=office.states[:ticks],
+            movers=office.movers[:ticks],
+        )
+
+    return first

@@ -25,6 +25,9 @@ class NavigatorConfig(NamedTuple):
     mover_speed: Annotated[
         float, Field("so fast a mover may come into view head-on", "m/s", 0.0, 20.0)
     ] = 0.8
+    corner_speed: Annotated[
+        float, Field("so fast a mover may come round a blind corner", "m/s", 0.0, 20.0)
+    ] = 0.3
     scan_age: Annotated[float, Field("older data are no data", "s", 0.05, 5.0)] = 0.3
     unknown: Annotated[Literal["free", "blocked"], Field("plan through unknown space?")] = "blocked"
     goal_tolerance: Annotated[float, Field("so near is there", "m", 0.01, 5.0)] = 0.25

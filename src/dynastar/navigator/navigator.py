@@ -20,7 +20,7 @@ from dynastar.navigator.progress import Progress
 from dynastar.navigator.recovery import Recovery
 from dynastar.navigator.senses import Senses
 from dynastar.navigator.status import RobotState, Status
-from dynastar.navigator.target import local_target
+from dynastar.navigator.target import leading_away, local_target
 from dynastar.obstacles import MovingObstacle
 from dynastar.path import Path
 from dynastar.robot import Robot
@@ -51,7 +51,7 @@ class Navigator:
             config.mover_error,
             config.linger,
         )
-        self._v_wary = wary_speed(robot, config.mover_speed)
+
         self.window = DynamicWindow(robot, config.dwa, config.period)
         self.senses = Senses(robot, config)
         self.progress, self.recovery = Progress(), Recovery(config)
@@ -195,6 +195,9 @@ class Navigator:
         assert self.status.plan is not None
         if self._s < self.status.plan.clear_from - 0.05:  # first out of where it is too tight
             target, seen = self._path.at(self.status.plan.clear_from), True
+        spare = self.window.clearance(around, state.pose) - self.margins.standing
+        if spare < 0.25 * config.layer.resolution:
+            target = leading_away(target, (state.pose.x, state.pose.y), around)
         near = math.hypot(goal.x - state.pose.x, goal.y - state.pose.y) <= config.goal_tolerance
         aligning = near and goal.heading is not None
         if aligning:
@@ -215,7 +218,7 @@ class Navigator:
             PATH_SPACING,
             min(
                 self._profile.at(self._s),
-                self._v_wary,
+                self._wary_speed(state.pose),
                 float(bend_speed(abs(bearing), self.robot.limits)),
             ),
         )
@@ -297,6 +300,16 @@ class Navigator:
             out = self.window.evade(pose, twist, around, self.margins, self.config.latency)
             command = out if out is not None else command
         return self._brake(state) if command is None else self._send(state, command)
+
+    def _wary_speed(self, pose: Pose2D) -> float:
+        """The speed that can be braked for whatever comes out of sight's edge or from a blind corner."""
+        config, robot = self.config, self.robot
+        cap = wary_speed(robot.limits, config.mover_speed, robot.lidar.range_max)
+        nearest = self.senses.blind_corner(pose, math.radians(100.0))
+        if math.isfinite(nearest):
+            room = max(nearest - robot.footprint.circumscribed, 0.0)
+            cap = min(cap, wary_speed(robot.limits, config.corner_speed, room))
+        return max(cap, min(0.15, robot.limits.v_max))
 
     # -- the end, and the stop --------------------------------------------------------------------
 

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.path import Path
-from dynastar.robot import Limits, Robot
+from dynastar.robot import Limits
 
 SPACING = 0.1  # m between the points of the profile
 BEND = 0.5  # m either side of a point over which the path's change of heading counts as one bend
@@ -73,11 +73,10 @@ def bend_speed(angle: Floats | float, limits: Limits) -> Floats:
     return np.asarray(4.0 * SWING / (np.tan(0.5 * phi) * time))
 
 
-def wary_speed(robot: Robot, mover_speed: float) -> float:
-    """The speed (m/s) that leaves room to stop for a mover that comes into view head-on.
+def wary_speed(limits: Limits, mover_speed: float, room: float) -> float:
+    """The speed (m/s) that leaves time to stop for a mover that comes into view ``room`` metres ahead.
 
     While the robot brakes from v, over v^2 / 2b, the mover comes v / b times its own speed nearer:
-    together the lidar's range.
+    together the room.
     """
-    brake = robot.limits.v_brake
-    return -mover_speed + math.sqrt(mover_speed**2 + 2.0 * brake * robot.lidar.range_max)
+    return -mover_speed + math.sqrt(mover_speed**2 + 2.0 * limits.v_brake * room)

@@ -7,9 +7,12 @@ import numpy.typing as npt
 from numba import njit
 
 from dynastar.dwa import Surroundings
+from dynastar.dwa.clearance_kernels import centre_clearance
+from dynastar.geometry import wrap_angle
 from dynastar.path import Path
 
 SPACING = 0.1  # m between the points of the path that are tried
+AWAY = math.radians(65.0)  # off the straight way from what is too near
 NEAREST = 0.4  # m, a target to steer by is further
 
 
@@ -57,3 +60,24 @@ def local_target(
         if i >= 0 and (i == len(points) - 1 or math.dist(points[i], position) > NEAREST):
             return (float(points[i, 0]), float(points[i, 1])), True
     return path.at(s + NEAREST), False
+
+
+def leading_away(
+    target: tuple[float, float], position: tuple[float, float], around: Surroundings
+) -> tuple[float, float]:
+    """A target for a robot that stands too near to something: towards ``target``, but not nearer.
+
+    The direction is the one nearest to the target's among those up to ``AWAY`` off the field's
+    gradient, which points away from what is near.
+    """
+    x, y = position
+    h = around.resolution
+    field = around.field, around.x0, around.y0, around.resolution
+    gx = centre_clearance(*field, x + h, y) - centre_clearance(*field, x - h, y)
+    gy = centre_clearance(*field, x, y + h) - centre_clearance(*field, x, y - h)
+    if math.hypot(gx, gy) < 0.2 * h:
+        return target  # as near on the other side
+    away = math.atan2(gy, gx)
+    off = wrap_angle(math.atan2(target[1] - y, target[0] - x) - away)
+    heading = away + max(-AWAY, min(AWAY, off))
+    return x + NEAREST * math.cos(heading), y + NEAREST * math.sin(heading)

@@ -23,6 +23,7 @@ Floats = npt.NDArray[np.float64]
 
 WIDTH, HEIGHT, STRIP = 760, 620, 26  # final pixels, at most, of the world and of each strip
 HOLD = 2.0  # s that the last frame stays
+GROUNDS = 3  # of the colours named first, that others lie on
 NAMED = (
     *(palette.FREE, palette.UNKNOWN, palette.OCCUPIED, palette.OBSTACLE, palette.OBSTACLE_EDGE),
     *(palette.KEEPOUT, palette.SLOW, palette.MOVER, palette.MOVER_EDGE, palette.DRIVEN),
@@ -59,7 +60,8 @@ def animate_episode(
 ) -> None:
     """Writes the mission as a GIF of at most ``max_seconds``, faster than life where it has to be.
 
-    With ``progress`` a bar on stderr. Raises InputError for a suffix other than .gif and for an
+    ``fps`` is rounded to what a GIF can hold; the last frame stays 2 s more. With ``progress`` a
+    bar on stderr. Raises InputError for a suffix other than .gif and for an
     episode without a tick.
     """
     path = Path(path)
@@ -181,13 +183,11 @@ def _draw_words(frame: Canvas, episode: Episode, tick: int, speedup: int) -> Non
 
 def _colours() -> Image.Image:
     """A picture that holds the colours of all frames: the named ones, and what their edges mix."""
-    steps = dict.fromkeys((palette.UNKNOWN, palette.OCCUPIED), 4) | {palette.FREE: 8}
     named = [np.array(getrgb(name)) for name in NAMED]
     table = list(named)
-    for ground, count in steps.items():
-        under = np.array(getrgb(ground))
+    for under in named[:GROUNDS]:
         for over in named:
-            table += [under + (over - under) * part // count for part in range(1, count)]
+            table += [under + (over - under) * part // 4 for part in (1, 2, 3)]
     image = Image.new("P", (1, 1))
     image.putpalette(np.unique(np.array(table, dtype=np.uint8), axis=0).tobytes())
     return image

@@ -126,11 +126,14 @@ class Canvas:
             self.pen.line(ends, fill=colour, width=round(FINE * width))
 
     def badge(self, centre: Floats, away: Floats, letters: str) -> None:
-        """Letters in a dark disc, some pixels the way ``away`` (2,) from a place."""
+        """Letters in a dark disc, 18 pixels the way ``away`` (2,) from a place, on the picture."""
         ((column, row),) = self.pixels(np.asarray(centre, dtype=float).reshape(1, 2))
-        at = (column + 18 * FINE * float(away[0]), row - 18 * FINE * float(away[1]))
-        self.pen.line((column, row, *at), fill=palette.INK, width=FINE)
         reach = (7 if len(letters) == 1 else 9) * FINE
+        width, height = self.image.size
+        across = min(max(column + 18 * FINE * float(away[0]), reach), width - 1 - reach)
+        down = min(max(row - 18 * FINE * float(away[1]), reach), height - 1 - reach)
+        at = (across, down)
+        self.pen.line((column, row, *at), fill=palette.INK, width=FINE)
         box = (at[0] - reach, at[1] - reach, at[0] + reach, at[1] + reach)
         self.pen.ellipse(box, fill=palette.INK)
         self.pen.text(at, letters, fill="white", font=letters_font(10, bold=True), anchor="mm")

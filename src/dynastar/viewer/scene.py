@@ -14,6 +14,7 @@ from dynastar.path import Path
 Floats = npt.NDArray[np.float64]
 
 JUMP_SPEED = 6.0  # m/s; a mover that is faster between two ticks has jumped
+MOST_POINTS = 1000  # that a line is looked at in
 
 
 def explored_frame(episode: Episode) -> GridFrame:
@@ -73,7 +74,7 @@ def changes(plans: Sequence[Floats], tolerance: float) -> list[list[Floats]]:
             result.append([])
             continue
         line = Path(points)
-        samples = line.resampled(0.0, line.length, 0.5 * tolerance)
+        samples = line.resampled(0.0, line.length, max(0.5 * tolerance, line.length / MOST_POINTS))
         new = np.array([_is_apart(sample, drawn, tolerance) for sample in samples])
         new[1:-1] |= new[2:] | new[:-2]
         ends = np.flatnonzero(new[1:] != new[:-1]) + 1
@@ -127,7 +128,7 @@ def track_dots(track: Floats, ticks: Floats, spacing: float) -> Floats:
     dots: list[Floats] = []
     for leg in _legs(track, ticks):
         line = Path(leg)
-        for point in line.resampled(0.0, line.length, spacing):
+        for point in line.resampled(0.0, line.length, max(spacing, line.length / MOST_POINTS)):
             if not dots or np.hypot(*(np.array(dots) - point).T).min() > 0.75 * spacing:
                 dots.append(point)
     return np.array(dots).reshape(-1, 2)
