@@ -156,3 +156,64 @@ def slips_through(blocked, a, b):
                 if is_blocked(r + dr, c + dc) and line.distance(corner) < 1e-9:
                     return True
     return False
+
+
+def evaluate_window(robot, config, reach, samples, pose, twist, around, wish, margins):
+    """Eqs. 7 to 9 sample by sample: (best index, refusal codes without the certified stop, terms)."""
+    limits, radius = robot.limits, robot.footprint.inscribed
+    step = config.horizon / config.steps
+    rows, columns = around.field.shape
+    refused, terms = np.zeros(len(samples), int), np.zeros((len(samples), 4))
+    gap_to_target = math.dist(wish.target, pose[:2])
+    cap = min(wish.v_cap, limits.v_max)
+
+    def clearance(x, y):
+        column = math.floor((x - around.x0) / around.resolution)
+        row = math.floor((y - around.y0) / around.resolution)
+        inside = 0 <= row < rows and 0 <= column < columns
+        return float(around.field[row, column]) if inside else 0.0
+
+    for i, (v1, w1) in enumerate(samples):
+        at = pose
+        stop = max(abs(v1) / limits.v_brake, abs(w1) / limits.omega_brake)
+        must = reach + 0.5 * stop
+        gone, clear, strays, aim = 0.0, [], [], pose
+        for k in range(1, max(config.steps, math.ceil(must / step)) + 1):
+            share = min(1.0, (k - 0.5) * step / reach)
+            now = Twist(twist.v + share * (v1 - twist.v), twist.omega + share * (w1 - twist.omega))
+            at = arc(at, now, step)
+            gone += abs(now.v) * step
+            free = clearance(at.x, at.y) - radius
+            if free < margins.standing and k * step <= must:
+                refused[i] = 2
+                break
+            if k > config.steps:
+                continue
+            free = max(0.0, free - margins.standing)
+            for x, y, vx, vy, r in around.movers:
+                gap = math.dist((x + vx * k * step, y + vy * k * step), at[:2])
+                gap -= radius + r + margins.movers
+                if gap <= 0.0 and k * step <= must + 0.5 * stop:
+                    refused[i] = 3
+                free = min(free, max(0.0, gap))
+            if refused[i]:
+                break
+            clear.append(free)
+            nearest = wish.path[min(int(gone / wish.spacing), len(wish.path) - 1)]
+            strays.append(math.dist(nearest, at[:2]))
+            if gone <= 0.5 * gap_to_target:
+                aim = at
+        if refused[i]:
+            continue
+        bearing = math.atan2(wish.target[1] - aim.y, wish.target[0] - aim.x)
+        dist = clear[-1] if config.dist == "end" else min(clear)
+        terms[i] = (
+            1.0 - abs(wrap_angle(bearing - aim.theta)) / math.pi,
+            min(dist, config.clearance_cap) / config.clearance_cap,
+            max(0.0, cap - abs(max(v1, 0.0) - cap)) / limits.v_max,
+            1.0 - min(1.0, sum(strays) / len(strays) / config.path_cap),
+        )
+    free = refused == 0
+    scaled = terms / terms[free].sum(axis=0) if config.normalisation == "sum" else terms
+    score = np.where(free, (scaled * np.array(config.weights)).sum(axis=1), -np.inf)
+    return int(np.argmax(score)), refused, terms

@@ -58,7 +58,10 @@ def test_clearance_off_the_window_is_none():
 
 
 @given(
-    st.integers(0, 10**6), st.floats(-3, 3), st.floats(-1.2, 1.2), st.floats(-2, 2),
+    st.integers(0, 10**6),
+    st.floats(-3, 3),
+    st.floats(-1.2, 1.2),
+    st.floats(-2, 2),
     st.sampled_from([DISC, BOX]),
 )
 @settings(max_examples=300, deadline=None)
@@ -71,7 +74,8 @@ def test_a_clear_arc_is_clear_everywhere(seed, theta, length, angle, footprint):
     )
     along = [
         true_clearance(
-            centres, footprint,
+            centres,
+            footprint,
             *stop_kernels.arc(2.0, 2.0, theta, share * length, share * angle),
         )
         for share in np.linspace(0.0, 1.0, 60)
@@ -85,8 +89,26 @@ def test_a_clear_arc_is_clear_everywhere(seed, theta, length, angle, footprint):
 def certify(field, movers, v0, omega0, v, omega, period=0.1):
     shape = DISC.vertices, DISC.inscribed, DISC.circumscribed
     return stop_kernels.certify(
-        field, 0.0, 0.0, RESOLUTION, *shape, 0.05, 1.0, movers, 0.1, 0.1, 0.0, 2.0, 2.0, 0.0,
-        v0, omega0, v, omega, LIMITS, period,
+        field,
+        0.0,
+        0.0,
+        RESOLUTION,
+        *shape,
+        0.05,
+        1.0,
+        movers,
+        0.1,
+        0.1,
+        0.0,
+        2.0,
+        2.0,
+        0.0,
+        v0,
+        omega0,
+        v,
+        omega,
+        LIMITS,
+        period,
     )
 
 

@@ -11,9 +11,7 @@ from dynastar.robot import ROBOTS, slew
 
 PERIOD = 0.1
 MARGINS = Margins(0.05, 0.15, 0.1)
-OPEN = Surroundings(
-    np.full((200, 200), 9.0, np.float32), 0.0, 0.0, 0.05, np.empty((0, 5))
-)
+OPEN = Surroundings(np.full((200, 200), 9.0, np.float32), 0.0, 0.0, 0.05, np.empty((0, 5)))
 PATH = np.column_stack([5.0 + 0.1 * np.arange(60), np.full(60, 5.0)])
 WISH = Wish((7.5, 5.0), PATH, 0.1, 99.0)
 robots = st.sampled_from(sorted(ROBOTS))
@@ -43,11 +41,17 @@ def test_samples_and_commands_stay_inside_the_window(name, v, omega, may_reverse
         assert np.isclose(speeds, end).any()
     for sign in (-1, 1):
         end = slew(
-            twist.omega, sign * limits.omega_max, limits.omega_accel, limits.omega_brake,
+            twist.omega,
+            sign * limits.omega_max,
+            limits.omega_accel,
+            limits.omega_brake,
             window.reach,
         )
         assert np.isclose(rates, end).any()
-    for values, low_end, high_end in ((speeds, min(ends), max(ends)), (rates, rates.min(), rates.max())):
+    for values, low_end, high_end in (
+        (speeds, min(ends), max(ends)),
+        (rates, rates.min(), rates.max()),
+    ):
         if low_end < 0.0 < high_end:
             assert (values == 0.0).any()
     for command in window._commands[:n]:
@@ -109,12 +113,20 @@ def test_the_choice_is_that_of_a_plain_evaluation(normalisation, dist, seed):
     twist = Twist(0.4, 0.1)
     window, choice = choose("paper", twist, config, around)
     best, refused, terms = evaluate_window(
-        ROBOTS["paper"], config, window.reach, choice.samples, Pose2D(5.0, 5.0, 0.0), twist,
-        around, WISH, MARGINS,
+        ROBOTS["paper"],
+        config,
+        window.reach,
+        choice.samples,
+        Pose2D(5.0, 5.0, 0.0),
+        twist,
+        around,
+        WISH,
+        MARGINS,
     )
     free = (choice.refused == 0) | (refused == 0)
     assert ((choice.refused != 0) >= (refused != 0)).all()  # certified stops refuse more
-    np.testing.assert_allclose(choice.terms[free & (choice.refused == 0)],
-                               terms[free & (choice.refused == 0)], atol=1e-6)
+    np.testing.assert_allclose(
+        choice.terms[free & (choice.refused == 0)], terms[free & (choice.refused == 0)], atol=1e-6
+    )
     if (choice.refused == refused).all():
         assert choice.sample == pytest.approx(tuple(choice.samples[best]))

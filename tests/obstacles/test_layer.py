@@ -15,9 +15,7 @@ N = 360
 
 def scan(ranges, stamp=1.0, fov=math.tau, range_min=0.0, range_max=5.0):
     increment = math.tau / N if fov == math.tau else fov / (N - 1)
-    return LaserScan(
-        stamp, np.broadcast_to(ranges, N), -fov / 2, increment, range_min, range_max
-    )
+    return LaserScan(stamp, np.broadcast_to(ranges, N), -fov / 2, increment, range_min, range_max)
 
 
 def layer_after(*scans, pose=Pose2D(0.0, 0.0, 0.0), config=LayerConfig(), now=None, error=0.0):

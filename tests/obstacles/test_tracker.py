@@ -38,7 +38,11 @@ def watch(discs_at, seconds, sensor_at=lambda t: Pose2D(0.0, 0.0, 0.0), noise=No
             t, ranges_to(discs_at(t), sensor, noise), -math.pi, math.tau / N, 0.05, FAR
         )
         points, beams = scan_points(
-            scan.ranges, scan.range_min, scan.range_max, scan.angle_min, scan.angle_increment,
+            scan.ranges,
+            scan.range_min,
+            scan.range_max,
+            scan.angle_min,
+            scan.angle_increment,
             *sensor,
         )
         layer.follow(sensor.x, sensor.y)
@@ -66,7 +70,9 @@ def test_a_walker_leaves_no_ghost():
 def test_what_stands_is_no_mover_though_the_robot_drives_past():
     still = [(3.0, 1.0, 0.3), (2.0, -1.5, 0.4), (4.0, -0.3, 0.2), (5.0, 2.0, 0.5)]
     layer, tracker, moving = watch(
-        lambda t: still, 4.0, lambda t: Pose2D(0.8 * t, 0.0, 0.1 * t),
+        lambda t: still,
+        4.0,
+        lambda t: Pose2D(0.8 * t, 0.0, 0.1 * t),
         noise=np.random.default_rng(1),
     )
     assert tracker.movers == ()
@@ -81,7 +87,5 @@ def test_a_walker_that_stops_stands_again():
 
 
 def test_two_walkers_that_pass_each_other_keep_their_velocities():
-    _, tracker, _ = watch(
-        lambda t: [(3.0, -1.5 + 0.6 * t, 0.25), (4.2, 1.5 - 0.6 * t, 0.25)], 4.5
-    )
+    _, tracker, _ = watch(lambda t: [(3.0, -1.5 + 0.6 * t, 0.25), (4.2, 1.5 - 0.6 * t, 0.25)], 4.5)
     assert sorted(round(m.vy, 1) for m in tracker.movers) == pytest.approx([-0.6, 0.6], abs=0.15)

@@ -94,7 +94,9 @@ class DynamicWindow:
         self.reach = max(period, min(config.reach, slowest))
         n_v, n_w = config.v_samples, config.omega_samples
         if config.v_resolution > 0:
-            widest = min((limits.v_accel + limits.v_brake) * self.reach, limits.v_max - limits.v_min)
+            widest = min(
+                (limits.v_accel + limits.v_brake) * self.reach, limits.v_max - limits.v_min
+            )
             n_v = max(2, math.ceil(widest / config.v_resolution) + 1)
         if config.omega_resolution > 0:
             widest = min(
@@ -114,14 +116,28 @@ class DynamicWindow:
         shape = self.robot.footprint
         return float(
             footprint_clearance(
-                around.field, around.x0, around.y0, around.resolution, shape.vertices,
-                shape.inscribed, shape.circumscribed, enough, *pose,
+                around.field,
+                around.x0,
+                around.y0,
+                around.resolution,
+                shape.vertices,
+                shape.inscribed,
+                shape.circumscribed,
+                enough,
+                *pose,
             )
         )
 
     def choose(
-        self, pose: Pose2D, twist: Twist, around: Surroundings, wish: Wish, margins: Margins,
-        ahead: float = 0.0, may_reverse: bool = False, turn_only: bool = False,
+        self,
+        pose: Pose2D,
+        twist: Twist,
+        around: Surroundings,
+        wish: Wish,
+        margins: Margins,
+        ahead: float = 0.0,
+        may_reverse: bool = False,
+        turn_only: bool = False,
     ) -> Choice:
         """The best admissible command from ``pose`` and ``twist``, ``ahead`` seconds from now.
 
@@ -134,8 +150,16 @@ class DynamicWindow:
         v_min = limits.v_min if may_reverse else 0.0
         v_cap = 0.0 if turning else min(wish.v_cap, limits.v_max)
         n = window_kernels.sample_window(
-            *twist, v_min, v_cap, limits.omega_max, limits, self.reach, *self._counts,
-            self._speeds, self._rates, self._samples,
+            *twist,
+            v_min,
+            v_cap,
+            limits.omega_max,
+            limits,
+            self.reach,
+            *self._counts,
+            self._speeds,
+            self._rates,
+            self._samples,
         )
         v_scale = limits.v_max
         if config.normalisation == "window":
@@ -143,24 +167,58 @@ class DynamicWindow:
             v_cap, v_scale = min(max(v_cap, low), high), max(high - low, 1e-6)
         cap = config.clearance_cap
         if config.clearance_of_path:
-            free = path_clearance(
-                around.field, around.x0, around.y0, around.resolution, wish.path
-            )
+            free = path_clearance(around.field, around.x0, around.y0, around.resolution, wish.path)
             cap = min(cap, max(free - shape.inscribed - margins.standing, LEAST_CAP))
         allowed = self.clearance(around, pose, margins.standing + 0.1)
         best = window_kernels.evaluate(
-            self._samples, n, self._commands, self._terms, self._refused, self._score,
-            *pose, *twist, limits, self.period, self.reach, config.horizon, config.steps,
-            around.field, around.x0, around.y0, around.resolution, shape.vertices, shape.inscribed,
-            shape.circumscribed, margins.standing, allowed, around.movers, margins.spread, margins.linger,
-            margins.movers, ahead, *wish.target, wish.path, wish.spacing, cap,
-            config.path_cap, config.dist == "end", v_cap, v_scale, turning, self._weights,
+            self._samples,
+            n,
+            self._commands,
+            self._terms,
+            self._refused,
+            self._score,
+            *pose,
+            *twist,
+            limits,
+            self.period,
+            self.reach,
+            config.horizon,
+            config.steps,
+            around.field,
+            around.x0,
+            around.y0,
+            around.resolution,
+            shape.vertices,
+            shape.inscribed,
+            shape.circumscribed,
+            margins.standing,
+            allowed,
+            around.movers,
+            margins.spread,
+            margins.linger,
+            margins.movers,
+            ahead,
+            *wish.target,
+            wish.path,
+            wish.spacing,
+            cap,
+            config.path_cap,
+            config.dist == "end",
+            v_cap,
+            v_scale,
+            turning,
+            self._weights,
             config.normalisation == "sum",
         )
         return self._explain(best, n)
 
     def back_off(
-        self, pose: Pose2D, twist: Twist, around: Surroundings, margins: Margins, ahead: float = 0.0,
+        self,
+        pose: Pose2D,
+        twist: Twist,
+        around: Surroundings,
+        margins: Margins,
+        ahead: float = 0.0,
         speed: float = 0.2,
     ) -> Twist | None:
         """A step towards driving straight back at up to ``speed`` m/s, if that has a certified stop."""
@@ -168,10 +226,26 @@ class DynamicWindow:
         v = slew(twist.v, max(limits.v_min, -speed), limits.v_accel, limits.v_brake, self.period)
         omega = slew(twist.omega, 0.0, limits.omega_accel, limits.omega_brake, self.period)
         code = stop_kernels.certify(
-            around.field, around.x0, around.y0, around.resolution, shape.vertices, shape.inscribed,
-            shape.circumscribed, margins.standing,
-            self.clearance(around, pose, margins.standing + 0.1), around.movers, margins.spread, margins.linger,
-            margins.movers, ahead, *pose, *twist, v, omega, limits, self.period,
+            around.field,
+            around.x0,
+            around.y0,
+            around.resolution,
+            shape.vertices,
+            shape.inscribed,
+            shape.circumscribed,
+            margins.standing,
+            self.clearance(around, pose, margins.standing + 0.1),
+            around.movers,
+            margins.spread,
+            margins.linger,
+            margins.movers,
+            ahead,
+            *pose,
+            *twist,
+            v,
+            omega,
+            limits,
+            self.period,
         )
         return Twist(v, omega) if code == stop_kernels.ADMISSIBLE else None
 
@@ -185,14 +259,39 @@ class DynamicWindow:
         """
         limits, shape = self.robot.limits, self.robot.footprint
         n = window_kernels.sample_window(
-            *twist, 0.0, limits.v_max, limits.omega_max, limits, self.reach, *self._counts,
-            self._speeds, self._rates, self._samples,
+            *twist,
+            0.0,
+            limits.v_max,
+            limits.omega_max,
+            limits,
+            self.reach,
+            *self._counts,
+            self._speeds,
+            self._rates,
+            self._samples,
         )
         best, gap, braked, braking = window_kernels.evade(
-            self._samples, n, self._commands, *pose, *twist, limits, self.period, self.reach, 1.0,
-            around.field, around.x0, around.y0, around.resolution, shape.vertices, shape.inscribed,
-            shape.circumscribed, margins.standing,
-            self.clearance(around, pose, margins.standing + 0.1), around.movers, ahead, EVADE_AHEAD,
+            self._samples,
+            n,
+            self._commands,
+            *pose,
+            *twist,
+            limits,
+            self.period,
+            self.reach,
+            1.0,
+            around.field,
+            around.x0,
+            around.y0,
+            around.resolution,
+            shape.vertices,
+            shape.inscribed,
+            shape.circumscribed,
+            margins.standing,
+            self.clearance(around, pose, margins.standing + 0.1),
+            around.movers,
+            ahead,
+            EVADE_AHEAD,
         )
         if best < 0 or braked > margins.movers or gap < braked + 0.05:
             return None
@@ -206,14 +305,22 @@ class DynamicWindow:
         shares = dict.fromkeys(TERMS, 0.0)
         command = sample = None
         if best >= 0:
-            command, sample = Twist(*self._commands[best].tolist()), Twist(*self._samples[best].tolist())
+            command, sample = (
+                Twist(*self._commands[best].tolist()),
+                Twist(*self._samples[best].tolist()),
+            )
             terms = self._terms[best]
             if self.config.normalisation == "sum":
                 total = self._terms[:n][refused == 0].sum(axis=0)
                 terms = np.divide(terms, total, out=np.zeros(4), where=total > 1e-9)
             shares = dict(zip(TERMS, (self._weights * terms).tolist(), strict=True))
         return Choice(
-            command, sample, shares,
+            command,
+            sample,
+            shares,
             {words: int(counts[code]) for code, words in REFUSALS.items()},
-            self._samples[:n], refused, self._terms[:n], self._score[:n],
+            self._samples[:n],
+            refused,
+            self._terms[:n],
+            self._score[:n],
         )

@@ -12,9 +12,41 @@ HEADING, DIST, VEL, SIMI = range(4)
 
 
 @njit(cache=True)
-def roll_out(sample_v, sample_w, x, y, theta, v0, omega0, reach, horizon, steps, field, x0, y0,
-             resolution, radius, margin, allowed, movers, mover_margin, ahead, target_x, target_y, path,
-             spacing, clearance_cap, path_cap, at_end, v_cap, v_scale, turning, b_v, b_w, terms):
+def roll_out(
+    sample_v,
+    sample_w,
+    x,
+    y,
+    theta,
+    v0,
+    omega0,
+    reach,
+    horizon,
+    steps,
+    field,
+    x0,
+    y0,
+    resolution,
+    radius,
+    margin,
+    allowed,
+    movers,
+    mover_margin,
+    ahead,
+    target_x,
+    target_y,
+    path,
+    spacing,
+    clearance_cap,
+    path_cap,
+    at_end,
+    v_cap,
+    v_scale,
+    turning,
+    b_v,
+    b_w,
+    terms,
+):
     """Rolls out one sample and writes its four raw terms, each in [0, 1]; returns a refusal code.
 
     The speeds go to the sample's over ``reach`` seconds and hold from there (Eq. 4, exact arcs).
@@ -47,9 +79,13 @@ def roll_out(sample_v, sample_w, x, y, theta, v0, omega0, reach, horizon, steps,
         for m in range(len(movers)):
             after = ahead + k * h
             gap = (
-                math.hypot(movers[m, 0] + movers[m, 2] * after - px,
-                           movers[m, 1] + movers[m, 3] * after - py)
-                - radius - movers[m, 4] - mover_margin
+                math.hypot(
+                    movers[m, 0] + movers[m, 2] * after - px,
+                    movers[m, 1] + movers[m, 3] * after - py,
+                )
+                - radius
+                - movers[m, 4]
+                - mover_margin
             )
             if gap <= 0.0 and k * h <= must + 0.5 * stop and (abs(sample_v) > 0.0 or abs(v0) > 0.0):
                 return MOVER

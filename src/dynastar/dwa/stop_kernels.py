@@ -32,8 +32,22 @@ def arc(x, y, theta, length, angle):
 
 
 @njit(cache=True)
-def arc_is_clear(field, x0, y0, resolution, vertices, inscribed, circumscribed, margin,
-                 x, y, theta, length, angle, allowed):
+def arc_is_clear(
+    field,
+    x0,
+    y0,
+    resolution,
+    vertices,
+    inscribed,
+    circumscribed,
+    margin,
+    x,
+    y,
+    theta,
+    length,
+    angle,
+    allowed,
+):
     """Whether the footprint, grown by ``margin``, sweeps only open space along an arc.
 
     Conservative advancement: no point of the footprint moves further than |length| + R |angle|,
@@ -48,8 +62,17 @@ def arc_is_clear(field, x0, y0, resolution, vertices, inscribed, circumscribed, 
         need = min(margin, allowed + LEAVING * share * abs(length))
         spare = (
             footprint_clearance(
-                field, x0, y0, resolution, vertices, inscribed, circumscribed,
-                margin + 4.0 * resolution, px, py, ptheta,
+                field,
+                x0,
+                y0,
+                resolution,
+                vertices,
+                inscribed,
+                circumscribed,
+                margin + 4.0 * resolution,
+                px,
+                py,
+                ptheta,
             )
             - need
         )
@@ -77,8 +100,9 @@ def position_on_stop(x, y, theta, v0, omega0, v, omega, ramp, stop, t):
 
 
 @njit(cache=True)
-def movers_stay_clear(movers, spread, radius, x, y, theta, v0, omega0, v, omega, ramp, stop, until,
-                      ahead):
+def movers_stay_clear(
+    movers, spread, radius, x, y, theta, v0, omega0, v, omega, ramp, stop, until, ahead
+):
     """Whether no mover comes into contact within ``until`` seconds of a motion.
 
     ``movers`` (m, 6) are x, y, vx, vy, radius, top speed as of now; the robot starts ``ahead``
@@ -93,7 +117,9 @@ def movers_stay_clear(movers, spread, radius, x, y, theta, v0, omega0, v, omega,
         need = radius + movers[m, 4]
         speed = math.hypot(movers[m, 2], movers[m, 3])
         top = max(speed, movers[m, 5])
-        if gap_now > need + top * (until + ahead) + (spread + max(abs(v), abs(v0))) * (moves + ahead):
+        if gap_now > need + top * (until + ahead) + (spread + max(abs(v), abs(v0))) * (
+            moves + ahead
+        ):
             continue
         for way in WAYS:
             scale = way * top / speed if way != 0.0 and speed > 1e-3 else 0.0
@@ -114,9 +140,31 @@ def movers_stay_clear(movers, spread, radius, x, y, theta, v0, omega0, v, omega,
 
 
 @njit(cache=True)
-def certify(field, x0, y0, resolution, vertices, inscribed, circumscribed, margin, allowed,
-            movers, spread, linger, mover_margin, ahead, x, y, theta, v0, omega0, v, omega, limits,
-            period):
+def certify(
+    field,
+    x0,
+    y0,
+    resolution,
+    vertices,
+    inscribed,
+    circumscribed,
+    margin,
+    allowed,
+    movers,
+    spread,
+    linger,
+    mover_margin,
+    ahead,
+    x,
+    y,
+    theta,
+    v0,
+    omega0,
+    v,
+    omega,
+    limits,
+    period,
+):
     """Why (x, y, theta) with speeds (v0, omega0) may not be commanded (v, omega), or ADMISSIBLE.
 
     Over one period the speeds change, each at its own limit; then both ramp to zero in proportion,
@@ -132,25 +180,79 @@ def certify(field, x0, y0, resolution, vertices, inscribed, circumscribed, margi
         next_w = slew(now_w, omega, a_w, b_w, period / parts)
         length = 0.5 * (now_v + next_v) * period / parts
         angle = 0.5 * (now_w + next_w) * period / parts
-        if not arc_is_clear(field, x0, y0, resolution, vertices, inscribed, circumscribed, margin,
-                            px, py, ptheta, length, angle, allowed):
+        if not arc_is_clear(
+            field,
+            x0,
+            y0,
+            resolution,
+            vertices,
+            inscribed,
+            circumscribed,
+            margin,
+            px,
+            py,
+            ptheta,
+            length,
+            angle,
+            allowed,
+        ):
             return NO_STOP
         px, py, ptheta = arc(px, py, ptheta, length, angle)
         now_v, now_w = next_v, next_w
     stop = max(abs(now_v) / b_v, abs(now_w) / b_w)
     if stop > 0.0 and not arc_is_clear(
-        field, x0, y0, resolution, vertices, inscribed, circumscribed, margin, px, py, ptheta,
-        0.5 * stop * now_v, 0.5 * stop * now_w, allowed,
+        field,
+        x0,
+        y0,
+        resolution,
+        vertices,
+        inscribed,
+        circumscribed,
+        margin,
+        px,
+        py,
+        ptheta,
+        0.5 * stop * now_v,
+        0.5 * stop * now_w,
+        allowed,
     ):
         return NO_STOP
     if len(movers) == 0:
         return ADMISSIBLE
     radius = circumscribed + mover_margin
-    if not movers_stay_clear(movers, spread, radius, x, y, theta, v0, omega0, now_v, now_w, period,
-                             stop, period + stop, ahead):
+    if not movers_stay_clear(
+        movers,
+        spread,
+        radius,
+        x,
+        y,
+        theta,
+        v0,
+        omega0,
+        now_v,
+        now_w,
+        period,
+        stop,
+        period + stop,
+        ahead,
+    ):
         return MOVER
-    if not movers_stay_clear(movers, spread, radius, x, y, theta, v0, omega0, now_v, now_w, period,
-                             stop, period + stop + linger, ahead):
+    if not movers_stay_clear(
+        movers,
+        spread,
+        radius,
+        x,
+        y,
+        theta,
+        v0,
+        omega0,
+        now_v,
+        now_w,
+        period,
+        stop,
+        period + stop + linger,
+        ahead,
+    ):
         return RUN_OVER
     return ADMISSIBLE
 

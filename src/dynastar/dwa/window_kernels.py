@@ -17,7 +17,6 @@ from dynastar.dwa.stop_kernels import (
     slew,
 )
 
-
 HELD = 1e9  # s of a stop so slow that the speeds are held
 
 
@@ -37,7 +36,9 @@ def axis(low, high, count, values):
 
 
 @njit(cache=True)
-def sample_window(v, omega, v_min, v_cap, omega_cap, limits, reach, n_v, n_w, speeds, rates, samples):
+def sample_window(
+    v, omega, v_min, v_cap, omega_cap, limits, reach, n_v, n_w, speeds, rates, samples
+):
     """V_m and V_d (Eqs. 5 and 6): the speeds reachable in ``reach`` seconds; returns how many samples.
 
     Above ``v_cap`` only braking is left. The last sample is the full brake, both speeds towards
@@ -60,10 +61,50 @@ def sample_window(v, omega, v_min, v_cap, omega_cap, limits, reach, n_v, n_w, sp
 
 
 @njit(cache=True)
-def evaluate(samples, n, commands, terms, refused, score, x, y, theta, v, omega, limits, period,
-             reach, horizon, steps, field, x0, y0, resolution, vertices, inscribed, circumscribed,
-             margin, allowed, movers, spread, linger, mover_margin, ahead, target_x, target_y, path, spacing,
-             clearance_cap, path_cap, at_end, v_cap, v_scale, turning, weights, by_sum):
+def evaluate(
+    samples,
+    n,
+    commands,
+    terms,
+    refused,
+    score,
+    x,
+    y,
+    theta,
+    v,
+    omega,
+    limits,
+    period,
+    reach,
+    horizon,
+    steps,
+    field,
+    x0,
+    y0,
+    resolution,
+    vertices,
+    inscribed,
+    circumscribed,
+    margin,
+    allowed,
+    movers,
+    spread,
+    linger,
+    mover_margin,
+    ahead,
+    target_x,
+    target_y,
+    path,
+    spacing,
+    clearance_cap,
+    path_cap,
+    at_end,
+    v_cap,
+    v_scale,
+    turning,
+    weights,
+    by_sum,
+):
     """Eqs. 7 to 9 over ``n`` samples; returns the index of the best admissible one, or -1.
 
     The command of a sample is the next period's step towards it; it has to have a certified stop.
@@ -77,23 +118,85 @@ def evaluate(samples, n, commands, terms, refused, score, x, y, theta, v, omega,
         next_w = slew(omega, omega + share * (wanted_w - omega), a_w, b_w, period)
         commands[i, 0], commands[i, 1] = next_v, next_w
         code = roll_out(
-            wanted_v, wanted_w, x, y, theta, v, omega, reach, horizon, steps, field, x0, y0,
-            resolution, inscribed, margin, allowed, movers, mover_margin, ahead, target_x, target_y, path,
-            spacing, clearance_cap, path_cap, at_end, v_cap, v_scale, turning, b_v, b_w, terms[i],
+            wanted_v,
+            wanted_w,
+            x,
+            y,
+            theta,
+            v,
+            omega,
+            reach,
+            horizon,
+            steps,
+            field,
+            x0,
+            y0,
+            resolution,
+            inscribed,
+            margin,
+            allowed,
+            movers,
+            mover_margin,
+            ahead,
+            target_x,
+            target_y,
+            path,
+            spacing,
+            clearance_cap,
+            path_cap,
+            at_end,
+            v_cap,
+            v_scale,
+            turning,
+            b_v,
+            b_w,
+            terms[i],
         )
         stays = at_rest and next_v == 0.0 and next_w == 0.0
         if code == ADMISSIBLE and not stays:
             code = certify(
-                field, x0, y0, resolution, vertices, inscribed, circumscribed, margin, allowed,
-                movers, spread, linger, mover_margin, ahead, x, y, theta, v, omega, next_v, next_w,
-                limits, period,
+                field,
+                x0,
+                y0,
+                resolution,
+                vertices,
+                inscribed,
+                circumscribed,
+                margin,
+                allowed,
+                movers,
+                spread,
+                linger,
+                mover_margin,
+                ahead,
+                x,
+                y,
+                theta,
+                v,
+                omega,
+                next_v,
+                next_w,
+                limits,
+                period,
             )
         if code == RUN_OVER:
             # It may not rest there; it may pass, if it gets across before any mover comes.
             stop = max(abs(next_v) / b_v, abs(next_w) / b_w)
             if movers_stay_clear(
-                movers, spread, circumscribed + mover_margin, x, y, theta, v, omega, wanted_v,
-                wanted_w, reach, HELD, stop + linger, ahead,
+                movers,
+                spread,
+                circumscribed + mover_margin,
+                x,
+                y,
+                theta,
+                v,
+                omega,
+                wanted_v,
+                wanted_w,
+                reach,
+                HELD,
+                stop + linger,
+                ahead,
             ):
                 code = ADMISSIBLE
         refused[i] = code
@@ -118,8 +221,32 @@ def least_gap(movers, radius, ahead, seconds, x, y, theta, v0, omega0, v, omega,
 
 
 @njit(cache=True)
-def evade(samples, n, commands, x, y, theta, v, omega, limits, period, reach, hold, field, x0, y0,
-          resolution, vertices, inscribed, circumscribed, margin, allowed, movers, ahead, seconds):
+def evade(
+    samples,
+    n,
+    commands,
+    x,
+    y,
+    theta,
+    v,
+    omega,
+    limits,
+    period,
+    reach,
+    hold,
+    field,
+    x0,
+    y0,
+    resolution,
+    vertices,
+    inscribed,
+    circumscribed,
+    margin,
+    allowed,
+    movers,
+    ahead,
+    seconds,
+):
     """The sample that keeps movers farthest away among those that could stop for what stands.
 
     Returns its index (-1 if there is none), its smallest gap (m), that of a full brake, and that of
@@ -129,8 +256,12 @@ def evade(samples, n, commands, x, y, theta, v, omega, limits, period, reach, ho
     nobody = movers[:0]
     share = min(1.0, period / reach)
     stop = max(abs(v) / b_v, abs(omega) / b_w)
-    braked = least_gap(movers, circumscribed, ahead, seconds, x, y, theta, v, omega, v, omega, 0.0, stop)
-    braking = least_gap(movers, circumscribed, ahead, stop, x, y, theta, v, omega, v, omega, 0.0, stop)
+    braked = least_gap(
+        movers, circumscribed, ahead, seconds, x, y, theta, v, omega, v, omega, 0.0, stop
+    )
+    braking = least_gap(
+        movers, circumscribed, ahead, stop, x, y, theta, v, omega, v, omega, 0.0, stop
+    )
     best, best_gap = -1, -np.inf
     for i in range(n):
         wanted_v, wanted_w = samples[i]
@@ -140,20 +271,82 @@ def evade(samples, n, commands, x, y, theta, v, omega, limits, period, reach, ho
         length, angle = 0.5 * (v + wanted_v) * reach, 0.5 * (omega + wanted_w) * reach
         stop = max(abs(wanted_v) / b_v, abs(wanted_w) / b_w)
         # Held for a while, then braked: as far as a stop that lasts longer.
-        gap = least_gap(movers, circumscribed, ahead, seconds, x, y, theta, v, omega, wanted_v,
-                        wanted_w, reach, stop + 2.0 * hold)
+        gap = least_gap(
+            movers,
+            circumscribed,
+            ahead,
+            seconds,
+            x,
+            y,
+            theta,
+            v,
+            omega,
+            wanted_v,
+            wanted_w,
+            reach,
+            stop + 2.0 * hold,
+        )
         if gap <= best_gap:
             continue
         qx, qy, qtheta = arc(x, y, theta, length, angle)
-        if not arc_is_clear(field, x0, y0, resolution, vertices, inscribed, circumscribed, margin,
-                            x, y, theta, length, angle, allowed):
+        if not arc_is_clear(
+            field,
+            x0,
+            y0,
+            resolution,
+            vertices,
+            inscribed,
+            circumscribed,
+            margin,
+            x,
+            y,
+            theta,
+            length,
+            angle,
+            allowed,
+        ):
             continue
-        if not arc_is_clear(field, x0, y0, resolution, vertices, inscribed, circumscribed, margin,
-                            qx, qy, qtheta, 0.5 * stop * wanted_v, 0.5 * stop * wanted_w, allowed):
+        if not arc_is_clear(
+            field,
+            x0,
+            y0,
+            resolution,
+            vertices,
+            inscribed,
+            circumscribed,
+            margin,
+            qx,
+            qy,
+            qtheta,
+            0.5 * stop * wanted_v,
+            0.5 * stop * wanted_w,
+            allowed,
+        ):
             continue
         code = certify(
-            field, x0, y0, resolution, vertices, inscribed, circumscribed, margin, allowed, nobody,
-            0.0, 0.0, 0.0, ahead, x, y, theta, v, omega, next_v, next_w, limits, period,
+            field,
+            x0,
+            y0,
+            resolution,
+            vertices,
+            inscribed,
+            circumscribed,
+            margin,
+            allowed,
+            nobody,
+            0.0,
+            0.0,
+            0.0,
+            ahead,
+            x,
+            y,
+            theta,
+            v,
+            omega,
+            next_v,
+            next_w,
+            limits,
+            period,
         )
         if code == ADMISSIBLE:
             best, best_gap = i, gap

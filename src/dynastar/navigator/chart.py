@@ -23,7 +23,9 @@ class Chart:
     other, which keeps what a certified stop needs and no more, is asked.
     """
 
-    def __init__(self, grid: OccupancyGrid, config: NavigatorConfig, radius: float, tight: float) -> None:
+    def __init__(
+        self, grid: OccupancyGrid, config: NavigatorConfig, radius: float, tight: float
+    ) -> None:
         factor = math.ceil(grid.resolution / config.planning_resolution - 1e-9)
         self.grid = grid.refined(factor)
         self.frame = self.grid.frame
@@ -32,9 +34,7 @@ class Chart:
         if self.grid.keepout is not None:
             self._unknown = self._unknown & ~self.grid.keepout
         radii = sorted({radius + config.comfort, radius, tight}, reverse=True)
-        self.planners = [
-            GridPlanner(self.grid, r, config.unknown, config.planner) for r in radii
-        ]
+        self.planners = [GridPlanner(self.grid, r, config.unknown, config.planner) for r in radii]
         self.seen = np.zeros(self.prior.shape, np.bool_)
         self.cleared = np.zeros(self.prior.shape, np.bool_)
         near = inflate(self.grid.occupied, 1.0, outside_blocked=False)

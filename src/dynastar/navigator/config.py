@@ -32,7 +32,9 @@ class NavigatorConfig(NamedTuple):
     unknown: Annotated[Literal["free", "blocked"], Field("plan through unknown space?")] = "blocked"
     goal_tolerance: Annotated[float, Field("so near is there", "m", 0.01, 5.0)] = 0.25
     heading_tolerance: Annotated[float, Field("so well aligned is aligned", "rad", 0.01, 3.2)] = 0.1
-    lookahead: Annotated[float, Field("the target lies so far along the path", "m", 0.2, 50.0)] = 1.5
+    lookahead: Annotated[float, Field("the target lies so far along the path", "m", 0.2, 50.0)] = (
+        1.5
+    )
     planning_resolution: Annotated[float, Field("plan on cells no larger", "m", 0.01, 10.0)] = 0.1
     comfort: Annotated[float, Field("clearance a plan has to spare if it can", "m", 0.0, 5.0)] = 0.1
     deviation: Annotated[float, Field("replan when so far off the path", "m", 0.1, 50.0)] = 1.0
@@ -61,7 +63,9 @@ PRESETS: dict[str, NavigatorConfig] = {
 }
 
 
-def configured(preset: str = "default", overrides: Mapping[str, Any] | None = None) -> NavigatorConfig:
+def configured(
+    preset: str = "default", overrides: Mapping[str, Any] | None = None
+) -> NavigatorConfig:
     """A preset with ``overrides``, nested tables by field name; ConfigError names what is wrong."""
     return _merged(choose(preset, PRESETS, "preset"), overrides or {}, "")
 

@@ -106,7 +106,9 @@ class Navigator:
             self.progress.restart(state.stamp)
         around = self.senses.surroundings(state.stamp, movers)
         changed = self.chart.take_in(self.senses.layer)
-        self.status = replace(self.status, tracks=self.senses.tracker.movers, goals_left=len(self._goals))
+        self.status = replace(
+            self.status, tracks=self.senses.tracker.movers, goals_left=len(self._goals)
+        )
         if not self._goals or self.status.state == "blocked":
             return self._brake(state)
         if self._arrived(state):
@@ -137,7 +139,10 @@ class Navigator:
             assert self.status.plan is not None
             begin = max(self._s, self.status.plan.clear_from + 1e-3)
             rest = self._path.points[self._path.arc > begin]
-            if len(rest) and self.chart.blocked_at(np.vstack([self._path.at(begin), rest])) is not None:
+            if (
+                len(rest)
+                and self.chart.blocked_at(np.vstack([self._path.at(begin), rest])) is not None
+            ):
                 return self._replan(state, "an obstacle blocks the path")
         return True
 
@@ -202,9 +207,7 @@ class Navigator:
         aligning = near and goal.heading is not None
         if aligning:
             assert goal.heading is not None
-            target = (
-                state.pose.x + math.cos(goal.heading), state.pose.y + math.sin(goal.heading)
-            )
+            target = (state.pose.x + math.cos(goal.heading), state.pose.y + math.sin(goal.heading))
         bearing = wrap_angle(
             math.atan2(target[1] - state.pose.y, target[0] - state.pose.x) - state.pose.theta
         )
@@ -213,8 +216,9 @@ class Navigator:
             self.recovery.progressed(now)
         wish = Wish(
             target,
-            self._path.resampled(self._s, self._s + self.robot.limits.v_max * config.dwa.horizon,
-                                 PATH_SPACING),
+            self._path.resampled(
+                self._s, self._s + self.robot.limits.v_max * config.dwa.horizon, PATH_SPACING
+            ),
             PATH_SPACING,
             min(
                 self._profile.at(self._s),
@@ -232,12 +236,20 @@ class Navigator:
             return self._recover(state, pose, twist, around, wish)
         return self._carry_out(state, choice, pose, twist, around)
 
-    def _judge(self, state: RobotState, choice: Choice, seen: bool, aligning: bool,
-               target: tuple[float, float]) -> None:
+    def _judge(
+        self,
+        state: RobotState,
+        choice: Choice,
+        seen: bool,
+        aligning: bool,
+        target: tuple[float, float],
+    ) -> None:
         """Says what is going on, and starts a recovery when nothing is."""
         now = state.stamp
         held_up = choice.refused_for_movers > 0
-        slow = abs(state.twist.v) < 0.05 and (choice.command is None or abs(choice.command.v) < 0.05)
+        slow = abs(state.twist.v) < 0.05 and (
+            choice.command is None or abs(choice.command.v) < 0.05
+        )
         if held_up and slow and not aligning:
             if self._waiting_since is None:
                 self._waiting_since = now
@@ -274,8 +286,9 @@ class Navigator:
         log.info("recovery at %.1f s: %s", state.stamp, detail)
         self._say("recovering", detail, recoveries=self.status.recoveries + 1)
 
-    def _recover(self, state: RobotState, pose: Pose2D, twist: Twist, around: Surroundings,
-                 wish: Wish) -> Twist:
+    def _recover(
+        self, state: RobotState, pose: Pose2D, twist: Twist, around: Surroundings, wish: Wish
+    ) -> Twist:
         """Turns towards the path, or backs straight off, through the same window and promise."""
         back_off = self.recovery.step == "back off"
         if back_off:
@@ -292,8 +305,9 @@ class Navigator:
             return self._brake(state)
         return self._send(state, command)
 
-    def _carry_out(self, state: RobotState, choice: Choice, pose: Pose2D, twist: Twist,
-                   around: Surroundings) -> Twist:
+    def _carry_out(
+        self, state: RobotState, choice: Choice, pose: Pose2D, twist: Twist, around: Surroundings
+    ) -> Twist:
         """Drives as chosen, out of the way of movers if standing is no good, or brakes."""
         command = choice.command
         if len(around.movers) and (command is None or command == REST):
@@ -349,7 +363,9 @@ class Navigator:
     def _brake(self, state: RobotState) -> Twist:
         """Carries the last certified stop on."""
         finite = all(math.isfinite(number) for number in (state.stamp, *state.pose, *state.twist))
-        twist = self._when_it_acts(state)[1] if finite else self._sent[-1][1] if self._sent else REST
+        twist = (
+            self._when_it_acts(state)[1] if finite else self._sent[-1][1] if self._sent else REST
+        )
         command = self._stop.next(twist, self.config.period)
         if finite:
             self._note(state, command)

@@ -27,7 +27,9 @@ class SpeedProfile:
         self._arc = np.linspace(0.0, path.length, len(speed_limit))
         self._v_max = limits.v_max
         twice_brake = 2.0 * GENTLE * limits.v_brake
-        speed = np.minimum(np.minimum(limits.v_max, speed_limit), turning_speed(path, self._arc, limits))
+        speed = np.minimum(
+            np.minimum(limits.v_max, speed_limit), turning_speed(path, self._arc, limits)
+        )
         speed[-1] = 0.0
         # v^2 + 2 b s may not exceed that of any later point.
         energy = speed**2 + twice_brake * self._arc

@@ -83,8 +83,13 @@ class Senses:
             fault = None
         shape, blind = self.robot.footprint, self.robot.lidar.range_min
         here = self._poses[-1].pose
-        self.layer.assume_free(here.x, here.y, shape.circumscribed + blind
-                               + 2.0 * self.layer.config.resolution, now, self._fresh)
+        self.layer.assume_free(
+            here.x,
+            here.y,
+            shape.circumscribed + blind + 2.0 * self.layer.config.resolution,
+            now,
+            self._fresh,
+        )
         self._fresh = self._fresh and not math.isfinite(age)
         self.layer.update(now)
         return fault
@@ -113,11 +118,19 @@ class Senses:
         self._seen[scan.mount] = scan.stamp
         sensor = compose(self._pose_at(scan.stamp), scan.mount)
         points, beams = scan_points(
-            scan.ranges, scan.range_min, scan.range_max, scan.angle_min, scan.angle_increment,
+            scan.ranges,
+            scan.range_min,
+            scan.range_max,
+            scan.angle_min,
+            scan.angle_increment,
             *sensor,
         )
         self._corners = blind_corners(
-            scan.ranges, scan.range_min, scan.range_max, scan.angle_min, scan.angle_increment,
+            scan.ranges,
+            scan.range_min,
+            scan.range_max,
+            scan.angle_min,
+            scan.angle_increment,
             *sensor,
         )
         moving = self.tracker.see(scan, sensor, points, beams, self.layer, known)
@@ -141,4 +154,6 @@ class Senses:
         moved = math.hypot(state.pose.x - last.pose.x, state.pose.y - last.pose.y)
         turned = abs(wrap_angle(state.pose.theta - last.pose.theta))
         far = max(limits.v_max, -limits.v_min) * dt * 1.2 + 4.0 * config.pose_error + 0.05
-        return moved > far or turned > limits.omega_max * dt * 1.2 + 4.0 * config.heading_error + 0.1
+        return (
+            moved > far or turned > limits.omega_max * dt * 1.2 + 4.0 * config.heading_error + 0.1
+        )

@@ -96,20 +96,43 @@ class ObstacleLayer:
             allowed = inside & (hit < now - self.config.memory) & ~self._occupied_on_map(part)
         free[allowed] = np.maximum(free[allowed], now)
 
-    def see(self, scan: LaserScan, sensor: Pose2D, points: Points, moving: npt.NDArray[np.bool_],
-            range_error: float, heading_error: float) -> None:
+    def see(
+        self,
+        scan: LaserScan,
+        sensor: Pose2D,
+        points: Points,
+        moving: npt.NDArray[np.bool_],
+        range_error: float,
+        heading_error: float,
+    ) -> None:
         """Takes in one scan from the ``sensor`` pose; ``points`` are its ends, ``moving`` leaves out."""
         increment = scan.angle_increment
         full = abs(increment) * len(scan.ranges) > math.tau - 0.5 * abs(increment)
         gaps = kernels.free_ranges(
-            scan.ranges, scan.range_min, scan.range_max, increment, full, range_error,
-            heading_error, self.config.narrowest,
+            scan.ranges,
+            scan.range_min,
+            scan.range_max,
+            increment,
+            full,
+            range_error,
+            heading_error,
+            self.config.narrowest,
         )
         x0, y0 = self.origin
         a = self.config.resolution
         kernels.mark_free(
-            self.free_at, x0, y0, a, gaps, scan.angle_min, increment, full,
-            sensor.x, sensor.y, sensor.theta, scan.stamp,
+            self.free_at,
+            x0,
+            y0,
+            a,
+            gaps,
+            scan.angle_min,
+            increment,
+            full,
+            sensor.x,
+            sensor.y,
+            sensor.theta,
+            scan.stamp,
         )
         kernels.mark_hits(self.hit_at, x0, y0, a, points, moving, scan.stamp)
 
@@ -123,7 +146,12 @@ class ObstacleLayer:
     def update(self, now: float) -> None:
         """Brings ``states``, ``open`` and ``field`` (metres between cell centres) up to date."""
         kernels.compose_states(
-            self.free_at, self.hit_at, self._barred, now - self.config.memory, self.states, self.open
+            self.free_at,
+            self.hit_at,
+            self._barred,
+            now - self.config.memory,
+            self.states,
+            self.open,
         )
         self.field = distance_field(self.open == 0, self.config.resolution)
 
@@ -149,7 +177,9 @@ class ObstacleLayer:
         a = self.config.resolution
         rows, columns = np.mgrid[: len(self.free_at), : len(self.free_at)][:, *part]
         x0, y0 = self.origin
-        points = np.column_stack([((columns + 0.5) * a + x0).ravel(), ((rows + 0.5) * a + y0).ravel()])
+        points = np.column_stack(
+            [((columns + 0.5) * a + x0).ravel(), ((rows + 0.5) * a + y0).ravel()]
+        )
         if self._grid is None:
             return np.zeros((*rows.shape, 2), np.int64), np.zeros(rows.shape, np.bool_)
         cells = np.floor(self._grid.frame.points_to_grid(points)).astype(np.int64)

@@ -9,8 +9,9 @@ NEVER = -1e18
 
 
 @njit(cache=True)
-def free_ranges(ranges, range_min, range_max, increment, full_circle, range_error, heading_error,
-                narrowest):
+def free_ranges(
+    ranges, range_min, range_max, increment, full_circle, range_error, heading_error, narrowest
+):
     """How far space is observed free in the gap between beam i and beam i + 1, metres (n,).
 
     As far as the shorter of the two, less the error of a range and half the gap (a corner may stand
@@ -50,8 +51,9 @@ def free_ranges(ranges, range_min, range_max, increment, full_circle, range_erro
 
 
 @njit(cache=True)
-def mark_free(free_at, x0, y0, resolution, gaps, angle_min, increment, full_circle, x, y, theta,
-              now):
+def mark_free(
+    free_at, x0, y0, resolution, gaps, angle_min, increment, full_circle, x, y, theta, now
+):
     """Stamps ``now`` into ``free_at`` for every cell whose centre lies in observed-free space.
 
     (x0, y0) is the window's low corner, (x, y, theta) the sensor's pose, all in the map frame.

@@ -23,7 +23,9 @@ class TrackerConfig(NamedTuple):
     fresh_share: Annotated[
         float, Field("share of a mover's points in space seen free before", "", 0.0, 1.0)
     ] = 0.4
-    fresh_time: Annotated[float, Field("how long space counts as seen before", "s", 0.1, 60.0)] = 3.0
+    fresh_time: Annotated[float, Field("how long space counts as seen before", "s", 0.1, 60.0)] = (
+        3.0
+    )
     rest_time: Annotated[float, Field("slow for so long stands again", "s", 0.0, 60.0)] = 1.0
     coast: Annotated[float, Field("a hidden mover is predicted for so long", "s", 0.0, 60.0)] = 1.5
     gate: Annotated[float, Field("a track's next point lies within", "m", 0.01, 5.0)] = 0.35
@@ -69,8 +71,13 @@ class Tracker:
         self._tracks = self._tracks[:0]
 
     def see(
-        self, scan: LaserScan, sensor: Pose2D, points: Points, beams: npt.NDArray[np.int64],
-        layer: ObstacleLayer, known: Known = NOTHING_KNOWN,
+        self,
+        scan: LaserScan,
+        sensor: Pose2D,
+        points: Points,
+        beams: npt.NDArray[np.int64],
+        layer: ObstacleLayer,
+        known: Known = NOTHING_KNOWN,
     ) -> npt.NDArray[np.bool_]:
         """Takes in one scan before the layer does; returns which ``points`` lie on movers.
 
@@ -80,9 +87,21 @@ class Tracker:
         n_beams, step = len(scan.ranges), abs(scan.angle_increment)
         full = step * n_beams > math.tau - 0.5 * step
         found = kernels.clusters(
-            points, beams, n_beams, full, step, sensor.x, sensor.y, config.gap, config.widest,
-            layer.free_at, *layer.origin, layer.config.resolution, now - config.fresh_time,
-            known.mask, known.frame,
+            points,
+            beams,
+            n_beams,
+            full,
+            step,
+            sensor.x,
+            sensor.y,
+            config.gap,
+            config.widest,
+            layer.free_at,
+            *layer.origin,
+            layer.config.resolution,
+            now - config.fresh_time,
+            known.mask,
+            known.frame,
         )
         dt = min(max(now - self._stamp, 0.0), 1.0) if self._stamp > -math.inf else 0.0
         self._stamp = now

@@ -16,8 +16,24 @@ DISC_DEPTH = 0.25 * math.pi  # mean depth of a disc's visible half, in radii
 
 
 @njit(cache=True)
-def clusters(points, beams, n_beams, full_circle, step, sensor_x, sensor_y, gap, widest,
-             free_at, x0, y0, resolution, since, known, known_frame):
+def clusters(
+    points,
+    beams,
+    n_beams,
+    full_circle,
+    step,
+    sensor_x,
+    sensor_y,
+    gap,
+    widest,
+    free_at,
+    x0,
+    y0,
+    resolution,
+    since,
+    known,
+    known_frame,
+):
     """Groups neighbouring points into things that could move: (m, 6), see the columns above.
 
     A group breaks where neighbours lie further apart than ``gap`` plus twice the beams' spacing;
@@ -62,16 +78,24 @@ def clusters(points, beams, n_beams, full_circle, step, sensor_x, sensor_y, gap,
                 cy += py
                 low_x, high_x = min(low_x, px), max(high_x, px)
                 low_y, high_y = min(low_y, py), max(high_y, py)
-                row, column = int(math.floor((py - y0) / resolution)), int(
-                    math.floor((px - x0) / resolution)
+                row, column = (
+                    int(math.floor((py - y0) / resolution)),
+                    int(math.floor((px - x0) / resolution)),
                 )
-                if (0 <= row < free_at.shape[0] and 0 <= column < free_at.shape[1]
-                        and free_at[row, column] > since):
+                if (
+                    0 <= row < free_at.shape[0]
+                    and 0 <= column < free_at.shape[1]
+                    and free_at[row, column] > since
+                ):
                     fresh += 1
                 dx, dy = px - known_frame[1], py - known_frame[2]
                 column = int(math.floor((cos * dx + sin * dy) / known_frame[0]))
                 row = int(math.floor((cos * dy - sin * dx) / known_frame[0]))
-                if 0 <= row < known.shape[0] and 0 <= column < known.shape[1] and known[row, column]:
+                if (
+                    0 <= row < known.shape[0]
+                    and 0 <= column < known.shape[1]
+                    and known[row, column]
+                ):
                     on_map += 1
             cx, cy = cx / count, cy / count
             if 2 * on_map < count and math.hypot(high_x - low_x, high_y - low_y) <= widest:
