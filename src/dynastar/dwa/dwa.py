@@ -279,7 +279,6 @@ class DynamicWindow:
             limits,
             self.period,
             self.reach,
-            1.0,
             around.field,
             around.x0,
             around.y0,

@@ -17,6 +17,7 @@ from dynastar.dwa.stop_kernels import (
     slew,
 )
 
+HOLDS = (0.0, 1.0, 2.0, 4.0)  # s that a way out goes on before it brakes
 HELD = 1e9  # s of a stop so slow that the speeds are held
 
 
@@ -181,7 +182,7 @@ def evaluate(
             )
         if code == RUN_OVER:
             # It may not rest there; it may pass, if it gets across before any mover comes.
-            stop = max(abs(next_v) / b_v, abs(next_w) / b_w)
+            until = max(abs(next_v) / b_v, abs(next_w) / b_w) + linger
             if movers_stay_clear(
                 movers,
                 spread,
@@ -195,7 +196,7 @@ def evaluate(
                 wanted_w,
                 reach,
                 HELD,
-                stop + linger,
+                until,
                 ahead,
             ):
                 code = ADMISSIBLE
@@ -233,7 +234,6 @@ def evade(
     limits,
     period,
     reach,
-    hold,
     field,
     x0,
     y0,
@@ -250,7 +250,7 @@ def evade(
     """The sample that keeps movers farthest away among those that could stop for what stands.
 
     Returns its index (-1 if there is none), its smallest gap (m), that of a full brake, and that of
-    a full brake until it rests. A sample is held for ``hold`` seconds once reached, then braked.
+    a full brake until it rests. Once reached, a sample is held for one of ``HOLDS``, then braked.
     """
     _, _, a_v, a_w, b_v, b_w, _ = limits
     nobody = movers[:0]
@@ -270,84 +270,87 @@ def evade(
         commands[i, 0], commands[i, 1] = next_v, next_w
         length, angle = 0.5 * (v + wanted_v) * reach, 0.5 * (omega + wanted_w) * reach
         stop = max(abs(wanted_v) / b_v, abs(wanted_w) / b_w)
-        # Held for a while, then braked: as far as a stop that lasts longer.
-        gap = least_gap(
-            movers,
-            circumscribed,
-            ahead,
-            seconds,
-            x,
-            y,
-            theta,
-            v,
-            omega,
-            wanted_v,
-            wanted_w,
-            reach,
-            stop + 2.0 * hold,
-        )
-        if gap <= best_gap:
-            continue
         qx, qy, qtheta = arc(x, y, theta, length, angle)
-        if not arc_is_clear(
-            field,
-            x0,
-            y0,
-            resolution,
-            vertices,
-            inscribed,
-            circumscribed,
-            margin,
-            x,
-            y,
-            theta,
-            length,
-            angle,
-            allowed,
-        ):
-            continue
-        if not arc_is_clear(
-            field,
-            x0,
-            y0,
-            resolution,
-            vertices,
-            inscribed,
-            circumscribed,
-            margin,
-            qx,
-            qy,
-            qtheta,
-            0.5 * stop * wanted_v,
-            0.5 * stop * wanted_w,
-            allowed,
-        ):
-            continue
-        code = certify(
-            field,
-            x0,
-            y0,
-            resolution,
-            vertices,
-            inscribed,
-            circumscribed,
-            margin,
-            allowed,
-            nobody,
-            0.0,
-            0.0,
-            0.0,
-            ahead,
-            x,
-            y,
-            theta,
-            v,
-            omega,
-            next_v,
-            next_w,
-            limits,
-            period,
-        )
-        if code == ADMISSIBLE:
+        for hold in HOLDS:
+            # Held for a while, then braked: the arc of a stop that lasts longer.
+            after = stop + 2.0 * hold
+            gap = least_gap(
+                movers,
+                circumscribed,
+                ahead,
+                seconds,
+                x,
+                y,
+                theta,
+                v,
+                omega,
+                wanted_v,
+                wanted_w,
+                reach,
+                after,
+            )
+            if gap <= best_gap:
+                continue
+            if not arc_is_clear(
+                field,
+                x0,
+                y0,
+                resolution,
+                vertices,
+                inscribed,
+                circumscribed,
+                margin,
+                x,
+                y,
+                theta,
+                length,
+                angle,
+                allowed,
+            ):
+                break
+            if not arc_is_clear(
+                field,
+                x0,
+                y0,
+                resolution,
+                vertices,
+                inscribed,
+                circumscribed,
+                margin,
+                qx,
+                qy,
+                qtheta,
+                0.5 * after * wanted_v,
+                0.5 * after * wanted_w,
+                allowed,
+            ):
+                break
+            code = certify(
+                field,
+                x0,
+                y0,
+                resolution,
+                vertices,
+                inscribed,
+                circumscribed,
+                margin,
+                allowed,
+                nobody,
+                0.0,
+                0.0,
+                0.0,
+                ahead,
+                x,
+                y,
+                theta,
+                v,
+                omega,
+                next_v,
+                next_w,
+                limits,
+                period,
+            )
+            if code != ADMISSIBLE:
+                break
             best, best_gap = i, gap
     return best, best_gap, braked, braking
