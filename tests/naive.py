@@ -6,6 +6,9 @@ import math
 import numpy as np
 import shapely
 
+from dynastar.geometry import Twist, wrap_angle
+from dynastar.robot import arc
+
 STRAIGHT, DIAGONAL = 985, 1393  # the search's units: 1393 / 985 for sqrt(2)
 STEPS = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)]
 

@@ -34,7 +34,8 @@ class LaserScan:
     @property
     def angles(self) -> npt.NDArray[np.float64]:
         """Direction of every beam in the sensor's frame, rad."""
-        return self.angle_min + self.angle_increment * np.arange(len(self.ranges))
+        beams = np.arange(len(self.ranges), dtype=np.float64)
+        return np.asarray(self.angle_min + self.angle_increment * beams)
 
     def fault(self, beams: int | None = None) -> str | None:
         """What makes this scan unusable, in words, or None; ``beams`` is the number expected."""

@@ -57,7 +57,7 @@ class Watched:
         return command
 
     def _as_it_acts(self, state):
-        """The speeds at the time a command given now acts: what is on its way is carried out first."""
+        """The speeds when a command given now acts: those on their way are carried out first."""
         limits, latency = self.limits, self.config.latency
         v, omega = state.twist
         ends = [stamp + latency for stamp, _ in self._sent[1:]] + [state.stamp + latency]
@@ -73,7 +73,9 @@ def random_world(number):
     """A mission in a small static world that keeps within what the promise is made for."""
     random = np.random.default_rng(number)
     robot = random_robot(random)
-    noise = Noise(*(float(random.choice([0.0, random.uniform(0.0, b)])) for b in (0.05, 0.04, 0.04)))
+    noise = Noise(
+        *(float(random.choice([0.0, random.uniform(0.0, b)])) for b in (0.05, 0.04, 0.04))
+    )
     narrowest = float(random.uniform(0.08, 0.25))
     settings = random_settings(random, robot, narrowest)
     cell = float(random.choice([0.05, 0.1, 0.25, 0.5, 1.0]))
@@ -120,7 +122,7 @@ def random_robot(random):
     lidar = Lidar(
         beams=int(random.integers(90, 721)),
         fov=fov,
-        range_min=float(random.choice([0.0, random.uniform(0.0, 0.25)])),
+        range_min=float(random.choice([0.0, random.uniform(0.0, 0.4)])),
         range_max=float(random.uniform(3.0, 6.0)),
         x=float(random.uniform(-0.8, 0.8) * footprint.inscribed),
         y=float(random.uniform(-0.5, 0.5) * footprint.inscribed),
@@ -145,16 +147,19 @@ def random_settings(random, robot, narrowest):
         "path_cap": random.uniform(0.1, 2.0),
         "turn_in_place": random.uniform(0.3, 3.15),
     }
-    if random.random() < 0.5:
+    if random.random() < 0.7:
         names = ("heading", "dist", "vel", "simi")
-        dwa["weights"] = dict(zip(names, random.uniform(0.0, 1.0, 4).tolist(), strict=True))
+        weights = random.uniform((0.1, 0.0, 0.1, 0.0), (0.5, 0.3, 0.5, 1.0)).tolist()
+        dwa["weights"] = dict(zip(names, weights, strict=True))
+    always = "steps", "v_samples", "omega_samples", "v_resolution", "omega_resolution"
+    dwa = {key: value for key, value in dwa.items() if key in always or random.random() < 0.3}
     return {
         "period": random.uniform(0.05, 0.2),
         "lookahead": random.uniform(0.5, 3.0),
         "planning_resolution": random.uniform(0.05, 0.3),
         "comfort": random.uniform(0.0, 0.3),
         "deviation": random.uniform(0.3, 2.0),
-        "stuck_time": random.uniform(0.5, 6.0),
+        "stuck_time": random.uniform(0.5, 4.0),
         "mover_speed": random.choice([0.0, random.uniform(0.0, 1.0)]),
         "corner_speed": random.choice([0.0, random.uniform(0.0, 1.0)]),
         "layer": {
@@ -186,7 +191,7 @@ def random_grid(random, rows, columns, cell, narrowest):
 
 
 def random_mission(random, grid, robot, noise, settings):
-    """A start and a goal where the map leaves room, and obstacles beyond what a start takes as free."""
+    """A start and a goal with room on the map, and obstacles beyond what a start takes as free."""
     radius, layer = robot.footprint.circumscribed, settings["layer"]
     known = Solids(grid)
 
@@ -199,8 +204,8 @@ def random_mission(random, grid, robot, noise, settings):
                 return at
         return None
 
-    start = somewhere(radius + 0.15)
-    goal = max((somewhere(radius + 0.15) for _ in range(4)), key=lambda at: _gap(start, at))
+    start = somewhere(radius + random.uniform(0.03, 0.2))
+    goal = max((somewhere(radius + 0.15) for _ in range(2)), key=lambda at: _gap(start, at))
     bare = radius + robot.lidar.range_min + 2.0 * layer["resolution"] + 2.0 * noise.pose_bound
     obstacles = []
     for _ in range(random.integers(0, 9)):

@@ -66,9 +66,9 @@ def world(seed: int, number: int) -> Scenario | str:
     """The scenario of a number, or why the rule leaves it out."""
     rng = np.random.default_rng([seed, number])
     free_cells = np.array([c for c in range(CELLS * CELLS) if c not in (0, CELLS * CELLS - 1)])
-    occupied = np.zeros(CELLS * CELLS, bool)
-    occupied[rng.choice(free_cells, round(OCCUPIED * CELLS * CELLS), replace=False)] = True
-    occupied = occupied.reshape(CELLS, CELLS)
+    flat = np.zeros(CELLS * CELLS, bool)
+    flat[rng.choice(free_cells, round(OCCUPIED * CELLS * CELLS), replace=False)] = True
+    occupied = flat.reshape(CELLS, CELLS)
     try:
         path = SearchGrid(occupied).search((0, 0), (CELLS - 1, CELLS - 1)).cells
     except NoPath:

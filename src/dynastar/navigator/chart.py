@@ -38,7 +38,7 @@ class Chart:
         self.seen = np.zeros(self.prior.shape, np.bool_)
         self.cleared = np.zeros(self.prior.shape, np.bool_)
         near = inflate(self.grid.occupied, 1.0, outside_blocked=False)
-        self.known = Known(near, tuple(self.frame))
+        self.known = Known(near, self.frame)
 
     @property
     def blocked(self) -> Mask:

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 from dynastar.config import Field, checked, choose
 from dynastar.dwa import DwaConfig, Weights
 from dynastar.obstacles import LayerConfig, TrackerConfig
-from dynastar.planning import PlannerConfig
+from dynastar.planning import HeuristicConfig, PlannerConfig
 
 
 class NavigatorConfig(NamedTuple):
@@ -27,7 +27,7 @@ class NavigatorConfig(NamedTuple):
     ] = 0.8
     corner_speed: Annotated[
         float, Field("so fast a mover may come round a blind corner", "m/s", 0.0, 20.0)
-    ] = 0.3
+    ] = 0.05
     scan_age: Annotated[float, Field("older data are no data", "s", 0.05, 5.0)] = 0.3
     unknown: Annotated[Literal["free", "blocked"], Field("plan through unknown space?")] = "blocked"
     goal_tolerance: Annotated[float, Field("so near is there", "m", 0.01, 5.0)] = 0.25
@@ -41,7 +41,7 @@ class NavigatorConfig(NamedTuple):
     stuck_time: Annotated[float, Field("no progress for so long is stuck", "s", 0.5, 120.0)] = 6.0
     patience: Annotated[float, Field("wait for a mover so long", "s", 0.0, 600.0)] = 15.0
     attempts: Annotated[int, Field("rounds of recovery before giving up", "", 1, 100)] = 4
-    planner: PlannerConfig = PlannerConfig()
+    planner: PlannerConfig = PlannerConfig(heuristic=HeuristicConfig(parent=False))
     dwa: DwaConfig = DwaConfig()
     layer: LayerConfig = LayerConfig()
     tracker: TrackerConfig = TrackerConfig()
@@ -49,8 +49,9 @@ class NavigatorConfig(NamedTuple):
 
 PRESETS: dict[str, NavigatorConfig] = {
     "default": NavigatorConfig(),
-    # The printed weights and resolutions; a sample is reached within one period (Eq. 6).
+    # Eq. 2 with all its terms, the printed weights and resolutions; a sample is reached within one period (Eq. 6).
     "paper": NavigatorConfig(
+        planner=PlannerConfig(),
         dwa=DwaConfig(
             weights=Weights(0.5, 0.2, 0.2, 0.1),
             reach=0.0,
@@ -58,7 +59,7 @@ PRESETS: dict[str, NavigatorConfig] = {
             omega_resolution=0.017453292519943295,
             normalisation="sum",
             clearance_of_path=False,
-        )
+        ),
     ),
 }
 

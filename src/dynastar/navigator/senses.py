@@ -100,7 +100,7 @@ class Senses:
             dt = now - self.last_scan
             rows = [(m.x + m.vx * dt, m.y + m.vy * dt, *m[2:]) for m in self.tracker.movers]
         else:
-            rows = [tuple(m) for m in movers if all(map(math.isfinite, m))]
+            rows = [(*m,) for m in movers if all(map(math.isfinite, m))]
         array = np.array(rows, dtype=np.float64).reshape(-1, 6)
         return Surroundings(
             self.layer.field, *self.layer.origin, self.layer.config.resolution, array

@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from dynastar.config import Field
 from dynastar.geometry import Pose2D
+from dynastar.grid import GridFrame
 from dynastar.obstacles import tracker_kernels as kernels
 from dynastar.obstacles.layer import ObstacleLayer, Points
 from dynastar.scan import LaserScan
@@ -52,10 +53,10 @@ class Known(NamedTuple):
     """The map's obstacles, widened a little, which no mover is looked for in."""
 
     mask: npt.NDArray[np.bool_]
-    frame: tuple[float, float, float, float]
+    frame: GridFrame
 
 
-NOTHING_KNOWN = Known(np.zeros((1, 1), np.bool_), (1.0, 0.0, 0.0, 0.0))
+NOTHING_KNOWN = Known(np.zeros((1, 1), np.bool_), GridFrame(1.0))
 
 
 class Tracker:

@@ -69,7 +69,7 @@ class GridPlanner:
         grid: OccupancyGrid,
         radius: float,
         unknown: Unknown = "blocked",
-        config: PlannerConfig = PlannerConfig(),  # noqa: B008 - immutable
+        config: PlannerConfig = PlannerConfig(),
     ) -> None:
         if not (math.isfinite(radius) and radius >= 0.0):
             raise ConfigError(f"a planning radius is {radius}: expected 0 m or more")

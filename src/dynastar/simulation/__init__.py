@@ -1,7 +1,8 @@
 """Simulation: a true world, what is sensed of it, and missions run in it."""
 
-from dynastar.simulation.run import Controller, run
+from dynastar.simulation.run import Controller, drive, run
 from dynastar.simulation.scenario import Mover, Noise, Scenario
+from dynastar.simulation.warm_up import warm_up
 from dynastar.simulation.world import World
 
-__all__ = ["Controller", "Mover", "Noise", "Scenario", "World", "run"]
+__all__ = ["Controller", "Mover", "Noise", "Scenario", "World", "drive", "run", "warm_up"]

@@ -15,6 +15,7 @@ from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import stopping_time
 from dynastar.simulation.record import Recorder
 from dynastar.simulation.scenario import Scenario
+from dynastar.simulation.warm_up import warm_up
 from dynastar.simulation.world import World
 
 SENSOR_LOST = 5.0  # s without usable data until a mission is given up
@@ -40,6 +41,19 @@ class Controller(Protocol):
 
 
 def run(
+    scenario: Scenario,
+    progress: bool = False,
+    seed: int | None = None,
+    *,
+    navigator: Callable[..., Controller] | None = None,
+) -> Episode:
+    """``drive`` with warm kernels, so that ``command_ms`` tells what commands cost."""
+    if navigator is None:
+        warm_up()
+    return drive(scenario, progress, seed, navigator=navigator)
+
+
+def drive(
     scenario: Scenario,
     progress: bool = False,
     seed: int | None = None,
@@ -74,6 +88,7 @@ def run(
         unit="s",
         file=sys.stderr,
         disable=not progress,
+        delay=0.5,
         bar_format="{desc}: {n:.1f} of at most {total:.0f} simulated s [{elapsed}]",
     ) as bar:
         while ending is None:
