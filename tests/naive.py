@@ -171,10 +171,16 @@ def evaluate_window(robot, config, reach, samples, pose, twist, around, wish, ma
     cap = min(wish.v_cap, limits.v_max)
 
     def clearance(x, y):
-        column = math.floor((x - around.x0) / around.resolution)
-        row = math.floor((y - around.y0) / around.resolution)
-        inside = 0 <= row < rows and 0 <= column < columns
-        return float(around.field[row, column]) if inside else 0.0
+        """Bilinear between the cells' centres, less what a distance can bend between them."""
+        fx = (x - around.x0) / around.resolution - 0.5
+        fy = (y - around.y0) / around.resolution - 0.5
+        if not (0 <= fx < columns - 1 and 0 <= fy < rows - 1):
+            return 0.0
+        c, r = int(fx), int(fy)
+        corners = around.field[r : r + 2, c : c + 2].astype(float)
+        d = np.array([1 - fy + r, fy - r]) @ corners @ np.array([1 - fx + c, fx - c])
+        a = around.resolution
+        return max(0.0, d - 0.5 * a) if d <= a else d - 0.25 * a * a / d
 
     for i, (v1, w1) in enumerate(samples):
         at = pose
@@ -193,7 +199,7 @@ def evaluate_window(robot, config, reach, samples, pose, twist, around, wish, ma
             if k > config.steps:
                 continue
             free = max(0.0, free - margins.standing)
-            for x, y, vx, vy, r in around.movers:
+            for x, y, vx, vy, r, _ in around.movers:
                 gap = math.dist((x + vx * k * step, y + vy * k * step), at[:2])
                 gap -= radius + r + margins.movers
                 if gap <= 0.0 and k * step <= must + 0.5 * stop:
@@ -213,10 +219,11 @@ def evaluate_window(robot, config, reach, samples, pose, twist, around, wish, ma
         terms[i] = (
             1.0 - abs(wrap_angle(bearing - aim.theta)) / math.pi,
             min(dist, config.clearance_cap) / config.clearance_cap,
-            max(0.0, cap - abs(max(v1, 0.0) - cap)) / limits.v_max,
+            max(0.0, 1.0 - abs(max(v1, 0.0) - cap) / limits.v_max),
             1.0 - min(1.0, sum(strays) / len(strays) / config.path_cap),
         )
     free = refused == 0
-    scaled = terms / terms[free].sum(axis=0) if config.normalisation == "sum" else terms
+    total = terms[free].sum(axis=0) if config.normalisation == "sum" else np.ones(4)
+    scaled = terms / np.where(total > 1e-9, total, np.inf)
     score = np.where(free, (scaled * np.array(config.weights)).sum(axis=1), -np.inf)
     return int(np.argmax(score)), refused, terms

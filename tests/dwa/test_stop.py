@@ -13,7 +13,7 @@ from dynastar.robot import Footprint, Limits, box
 RESOLUTION, SIDE = 0.05, 80
 DISC, BOX = Footprint.disc(0.3), box(0.5, 0.4)
 LIMITS = Limits(1.5, 1.5, 1.0, 1.5, 1.0, 1.5, -0.5)
-NOBODY = np.empty((0, 5))
+NOBODY = np.empty((0, 6))
 
 
 def world(seed, share=0.01):
@@ -46,7 +46,7 @@ def test_clearance_is_a_close_lower_bound(footprint, seed, x, y, theta):
     if footprint.is_disc or truth > 0.0:
         assert found <= truth + 1e-6
     if footprint.is_disc or 0.0 < truth < 0.25:
-        assert found >= truth - 0.5 * RESOLUTION
+        assert found >= truth - RESOLUTION / math.sqrt(2.0)
     else:
         assert (found > 0.05) == (truth > 0.05) or truth > 0.2
 
@@ -86,7 +86,7 @@ def test_a_clear_arc_is_clear_everywhere(seed, theta, length, angle, footprint):
         assert min(along) <= margin + RESOLUTION
 
 
-def certify(field, movers, v0, omega0, v, omega, period=0.1):
+def certify(field, movers, v0, omega0, v, omega, period=0.1, linger=0.0):
     shape = DISC.vertices, DISC.inscribed, DISC.circumscribed
     return stop_kernels.certify(
         field,
@@ -97,9 +97,10 @@ def certify(field, movers, v0, omega0, v, omega, period=0.1):
         0.05,
         1.0,
         movers,
-        0.1,
-        0.1,
-        0.0,
+        0.1,  # spread
+        linger,
+        0.1,  # margin to movers
+        0.0,  # ahead
         2.0,
         2.0,
         0.0,
@@ -125,7 +126,44 @@ def test_a_wall_ahead_forbids_what_could_not_stop():
 
 def test_a_mover_forbids_what_would_meet_it():
     field = np.full((SIDE, SIDE), 9.0, np.float32)
-    coming = np.array([[3.2, 2.0, -1.0, 0.0, 0.3]])
-    beside = np.array([[2.0, 3.8, 0.0, 0.2, 0.3]])
+    coming = np.array([[3.2, 2.0, -1.0, 0.0, 0.3, 1.0]])
+    beside = np.array([[2.0, 3.8, 0.0, 0.2, 0.3, 0.2]])
     assert certify(field, coming, 0.8, 0.0, 0.8, 0.0) == stop_kernels.MOVER
     assert certify(field, beside, 0.8, 0.0, 0.8, 0.0) == stop_kernels.ADMISSIBLE
+
+
+def test_where_a_mover_arrives_soon_after_is_no_place_to_rest():
+    field = np.full((SIDE, SIDE), 9.0, np.float32)
+    coming = np.array([[5.5, 2.0, -0.5, 0.0, 0.3, 0.5]])
+    leaving = coming * [1, 1, -1, 1, 1, 1]
+    assert certify(field, coming, 0.3, 0.0, 0.3, 0.0, linger=0.0) == stop_kernels.ADMISSIBLE
+    assert certify(field, coming, 0.3, 0.0, 0.3, 0.0, linger=6.0) == stop_kernels.RUN_OVER
+    assert certify(field, leaving, 0.3, 0.0, 0.3, 0.0, linger=6.0) == stop_kernels.RUN_OVER
+
+
+@given(
+    st.floats(-3, 3),
+    st.floats(-3, 3),
+    st.floats(-1, 1),
+    st.floats(-1, 1),
+    st.floats(0, 1.2),
+    st.floats(-1, 1),
+)
+@settings(max_examples=200, deadline=None)
+def test_movers_are_kept_clear_of_in_every_way_they_may_go(x, y, vx, vy, v, omega):
+    radius, spread, ramp = 0.4, 0.1, 0.1
+    stop = max(abs(v) / LIMITS.v_brake, abs(omega) / LIMITS.omega_brake)
+    mover = np.array([[x, y, vx, vy, 0.3, 0.0]])
+    clear = stop_kernels.movers_stay_clear(
+        mover, spread, radius, 0.0, 0.0, 0.3, v, omega, v, omega, ramp, stop, ramp + stop, 0.0
+    )
+    nearest = math.inf
+    for way in (1.0, 0.0, -1.0):
+        for t in np.linspace(0.0, ramp + stop, 400):
+            px, py = stop_kernels.position_on_stop(0.0, 0.0, 0.3, v, omega, v, omega, ramp, stop, t)
+            gap = math.hypot(x + way * vx * t - px, y + way * vy * t - py)
+            nearest = min(nearest, gap - radius - 0.3 - spread * t)
+    if nearest > 0.02:
+        assert clear
+    if nearest < -0.1 and math.hypot(x, y) > radius + 0.3 + 0.2:
+        assert not clear

@@ -11,7 +11,7 @@ from dynastar.robot import ROBOTS, slew
 
 PERIOD = 0.1
 MARGINS = Margins(0.05, 0.15, 0.1)
-OPEN = Surroundings(np.full((200, 200), 9.0, np.float32), 0.0, 0.0, 0.05, np.empty((0, 5)))
+OPEN = Surroundings(np.full((200, 200), 9.0, np.float32), 0.0, 0.0, 0.05, np.empty((0, 6)))
 PATH = np.column_stack([5.0 + 0.1 * np.arange(60), np.full(60, 5.0)])
 WISH = Wish((7.5, 5.0), PATH, 0.1, 99.0)
 robots = st.sampled_from(sorted(ROBOTS))
@@ -107,9 +107,15 @@ def test_the_choice_is_that_of_a_plain_evaluation(normalisation, dist, seed):
     closed[85:115, 85:115] = False
     from dynastar.clearance import distance_field
 
-    movers = np.array([[7.0, 5.5, -0.3, 0.0, 0.3]])
+    movers = np.array([[7.0, 5.5, -0.3, 0.0, 0.3, 0.3]])
     around = OPEN._replace(field=distance_field(closed, 0.05), movers=movers)
-    config = DwaConfig(normalisation=normalisation, dist=dist, v_samples=7, omega_samples=9)
+    config = DwaConfig(
+        normalisation=normalisation,
+        dist=dist,
+        v_samples=7,
+        omega_samples=9,
+        clearance_of_path=False,
+    )
     twist = Twist(0.4, 0.1)
     window, choice = choose("paper", twist, config, around)
     best, refused, terms = evaluate_window(

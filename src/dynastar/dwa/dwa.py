@@ -112,7 +112,7 @@ class DynamicWindow:
         self._weights = np.array(config.weights, dtype=np.float64)
 
     def clearance(self, around: Surroundings, pose: Pose2D, enough: float = 0.5) -> float:
-        """Metres from the footprint to the nearest centre of a cell not observed free (up to ``enough``)."""
+        """Metres, up to ``enough``, from the footprint to the nearest centre of a closed cell."""
         shape = self.robot.footprint
         return float(
             footprint_clearance(

@@ -24,7 +24,10 @@ class StopProfile:
         middle = self.elapsed + 0.5 * period
         self.elapsed += period
         if self.elapsed >= self.duration:
-            return Twist(0.0, 0.0)
+            return Twist(
+                _lead(current.v, 0.0, self.limits.v_brake, period),
+                _lead(current.omega, 0.0, self.limits.omega_brake, period),
+            )
         left = 1.0 - middle / self.duration
         return Twist(
             _lead(current.v, self.twist.v * left, self.limits.v_brake, period),

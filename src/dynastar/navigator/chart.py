@@ -117,8 +117,8 @@ class Chart:
 
     def _mark(self, changed: Mask, low: npt.NDArray[np.int64]) -> None:
         rows, columns = np.nonzero(changed)
-        first = low + (rows.min(), columns.min())
-        last = low + (rows.max() + 1, columns.max() + 1)
+        first = low + np.array([rows.min(), columns.min()])
+        last = low + np.array([rows.max() + 1, columns.max() + 1])
         part = np.s_[first[0] : last[0], first[1] : last[1]]
         patch = (self.prior[part] & ~self.cleared[part]) | self.seen[part]
         for planner in self.planners:

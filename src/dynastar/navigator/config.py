@@ -49,7 +49,7 @@ class NavigatorConfig(NamedTuple):
 
 PRESETS: dict[str, NavigatorConfig] = {
     "default": NavigatorConfig(),
-    # Eq. 2 with all its terms, the printed weights and resolutions; a sample is reached within one period (Eq. 6).
+    # Eq. 2 with all its terms, the printed weights and resolutions, one period's window (Eq. 6).
     "paper": NavigatorConfig(
         planner=PlannerConfig(),
         dwa=DwaConfig(
