@@ -208,8 +208,11 @@ def evaluate_window(robot, config, reach, samples, pose, twist, around, wish, ma
             if refused[i]:
                 break
             clear.append(free)
-            nearest = wish.path[min(int(gone / wish.spacing), len(wish.path) - 1)]
-            strays.append(math.dist(nearest, at[:2]))
+            place = gone / wish.spacing
+            if int(place) < len(wish.path) - 1:
+                index = np.arange(len(wish.path))
+                same = [np.interp(place, index, column) for column in wish.path.T]
+                strays.append(math.dist(same, at[:2]))
             if gone <= 0.5 * gap_to_target:
                 aim = at
         if refused[i]:
@@ -220,7 +223,7 @@ def evaluate_window(robot, config, reach, samples, pose, twist, around, wish, ma
             1.0 - abs(wrap_angle(bearing - aim.theta)) / math.pi,
             min(dist, config.clearance_cap) / config.clearance_cap,
             max(0.0, 1.0 - abs(max(v1, 0.0) - cap) / limits.v_max),
-            1.0 - min(1.0, sum(strays) / len(strays) / config.path_cap),
+            1.0 - min(1.0, sum(strays) / max(len(strays), 1) / config.path_cap),
         )
     free = refused == 0
     total = terms[free].sum(axis=0) if config.normalisation == "sum" else np.ones(4)

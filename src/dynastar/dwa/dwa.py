@@ -221,33 +221,37 @@ class DynamicWindow:
         ahead: float = 0.0,
         speed: float = 0.2,
     ) -> Twist | None:
-        """A step towards driving straight back at up to ``speed`` m/s, if that has a certified stop."""
+        """A step towards driving back at up to ``speed`` m/s, as straight as has a certified stop."""
         limits, shape = self.robot.limits, self.robot.footprint
         v = slew(twist.v, max(limits.v_min, -speed), limits.v_accel, limits.v_brake, self.period)
-        omega = slew(twist.omega, 0.0, limits.omega_accel, limits.omega_brake, self.period)
-        code = stop_kernels.certify(
-            around.field,
-            around.x0,
-            around.y0,
-            around.resolution,
-            shape.vertices,
-            shape.inscribed,
-            shape.circumscribed,
-            margins.standing,
-            self.clearance(around, pose, margins.standing + 0.1),
-            around.movers,
-            margins.spread,
-            margins.linger,
-            margins.movers,
-            ahead,
-            *pose,
-            *twist,
-            v,
-            omega,
-            limits,
-            self.period,
-        )
-        return Twist(v, omega) if code == stop_kernels.ADMISSIBLE else None
+        allowed = self.clearance(around, pose, margins.standing + 0.1)
+        for wanted in (0.0, 0.15, -0.15, 0.4, -0.4):  # rad/s, straight first
+            omega = slew(twist.omega, wanted, limits.omega_accel, limits.omega_brake, self.period)
+            code = stop_kernels.certify(
+                around.field,
+                around.x0,
+                around.y0,
+                around.resolution,
+                shape.vertices,
+                shape.inscribed,
+                shape.circumscribed,
+                margins.standing,
+                allowed,
+                around.movers,
+                margins.spread,
+                margins.linger,
+                margins.movers,
+                ahead,
+                *pose,
+                *twist,
+                v,
+                omega,
+                limits,
+                self.period,
+            )
+            if code == stop_kernels.ADMISSIBLE:
+                return Twist(v, omega)
+        return None
 
     def evade(
         self, pose: Pose2D, twist: Twist, around: Surroundings, margins: Margins, ahead: float = 0.0

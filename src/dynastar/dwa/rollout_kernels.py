@@ -62,6 +62,7 @@ def roll_out(
     length = 0.0
     least = end_clearance = np.inf
     strayed = 0.0
+    followed = 0
     aim_x, aim_y, aim_theta = x, y, theta
     for k in range(1, total + 1):
         t = (k - 0.5) * h
@@ -92,8 +93,14 @@ def roll_out(
             clear = min(clear, max(0.0, gap))
         least = min(least, clear)
         end_clearance = clear
-        i = min(int(length / spacing), len(path) - 1)
-        strayed += math.hypot(px - path[i, 0], py - path[i, 1])
+        i = int(length / spacing)
+        if i < len(path) - 1:  # beyond its end there is nothing to follow
+            part = length / spacing - i
+            strayed += math.hypot(
+                px - (1.0 - part) * path[i, 0] - part * path[i + 1, 0],
+                py - (1.0 - part) * path[i, 1] - part * path[i + 1, 1],
+            )
+            followed += 1
         if length <= 0.5 * target_gap:
             aim_x, aim_y, aim_theta = px, py, ptheta
     off = math.atan2(target_y - aim_y, target_x - aim_x) - aim_theta
@@ -102,7 +109,7 @@ def roll_out(
     terms[DIST] = min(end_clearance if at_end else least, clearance_cap) / clearance_cap
     speed = abs(sample_v) if turning else max(0.0, sample_v)
     terms[VEL] = max(0.0, 1.0 - abs(speed - v_cap) / v_scale)
-    terms[SIMI] = 1.0 - min(1.0, strayed / steps / path_cap)
+    terms[SIMI] = 1.0 - min(1.0, strayed / max(followed, 1) / path_cap)
     return ADMISSIBLE
 
 

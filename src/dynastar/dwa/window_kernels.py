@@ -115,7 +115,9 @@ def evaluate(
     at_rest = abs(v) < 1e-9 and abs(omega) < 1e-9
     for i in range(n):
         wanted_v, wanted_w = samples[i]
-        next_v = slew(v, v + share * (wanted_v - v), a_v, b_v, period)
+        # Above the cap it brakes fully; else it takes the period's share of the way.
+        share_v = 1.0 if wanted_v < v and v > v_cap else share
+        next_v = slew(v, v + share_v * (wanted_v - v), a_v, b_v, period)
         next_w = slew(omega, omega + share * (wanted_w - omega), a_w, b_w, period)
         commands[i, 0], commands[i, 1] = next_v, next_w
         code = roll_out(

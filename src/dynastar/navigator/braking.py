@@ -42,4 +42,6 @@ def _lead(current: float, mean: float, brake: float, period: float) -> float:
     """
     wanted = (abs(current) - abs(mean)) / (brake * period)
     drop = brake * period * (1.0 - math.sqrt(max(0.0, 1.0 - 2.0 * max(0.0, wanted))))
+    if drop > abs(current) - 1e-9:
+        return 0.0
     return slew(current, current - math.copysign(drop, current), brake, brake, period)

@@ -29,6 +29,7 @@ from dynastar.scan import LaserScan
 log = logging.getLogger("dynastar")
 
 REST = Twist(0.0, 0.0)
+BEHIND = 2.8  # rad off the heading from which a target is as good as behind
 OUT_OF_SIGHT = "the path is out of sight"
 PATH_SPACING = 0.1  # m between the points of the path that simi compares with
 
@@ -45,8 +46,11 @@ class Navigator:
     ) -> None:
         self.robot, self.config = robot, config
         half_diagonal = config.layer.resolution / math.sqrt(2.0)
+        lever = math.hypot(robot.lidar.x, robot.lidar.y)
+        if not robot.footprint.is_disc:
+            lever += robot.footprint.circumscribed
         self.margins = Margins(
-            half_diagonal + 2.0 * config.pose_error,
+            half_diagonal + 2.0 * config.pose_error + config.heading_error * lever,
             config.mover_margin + config.pose_error,
             config.mover_error,
             config.linger,
@@ -212,6 +216,12 @@ class Navigator:
             math.atan2(target[1] - state.pose.y, target[0] - state.pose.x) - state.pose.theta
         )
         self.progress.note_sight(now, seen)
+        if abs(bearing) > BEHIND:  # on the side that it turns to already, or it would dither
+            bearing = BEHIND if state.twist.omega >= 0.0 else -BEHIND
+            target = (
+                state.pose.x + 2.0 * math.cos(state.pose.theta + bearing),
+                state.pose.y + 2.0 * math.sin(state.pose.theta + bearing),
+            )
         if self.progress.note(now, left, bearing):
             self.recovery.progressed(now)
         wish = Wish(
@@ -222,6 +232,7 @@ class Navigator:
             PATH_SPACING,
             min(
                 self._profile.at(self._s),
+                self._profile.at(self._s + state.twist.v * (2.0 * config.period + config.latency)),
                 self._wary_speed(state.pose),
                 float(bend_speed(abs(bearing), self.robot.limits)),
             ),
@@ -229,7 +240,7 @@ class Navigator:
         if self.recovery.active(now):
             return self._recover(state, pose, twist, around, wish)
         choice = self.window.choose(
-            pose, twist, around, wish, self.margins, config.latency, turn_only=aligning
+            pose, twist, around, wish, self._margins(state), config.latency, turn_only=aligning
         )
         self._judge(state, choice, seen, aligning, target)
         if self.recovery.active(now):
@@ -293,11 +304,13 @@ class Navigator:
         back_off = self.recovery.step == "back off"
         if back_off:
             away = (pose.x - 2.0 * math.cos(pose.theta), pose.y - 2.0 * math.sin(pose.theta))
-            command = self.window.back_off(pose, twist, around, self.margins, self.config.latency)
+            command = self.window.back_off(
+                pose, twist, around, self._margins(state), self.config.latency
+            )
             self._say("recovering", "back off", target=away)
         else:
             choice = self.window.choose(
-                pose, twist, around, wish, self.margins, self.config.latency, turn_only=True
+                pose, twist, around, wish, self._margins(state), self.config.latency, turn_only=True
             )
             command = choice.command
             self._say("recovering", "turn towards the path", choice=choice, target=wish.target)
@@ -311,7 +324,7 @@ class Navigator:
         """Drives as chosen, out of the way of movers if standing is no good, or brakes."""
         command = choice.command
         if len(around.movers) and (command is None or command == REST):
-            out = self.window.evade(pose, twist, around, self.margins, self.config.latency)
+            out = self.window.evade(pose, twist, around, self._margins(state), self.config.latency)
             command = out if out is not None else command
         return self._brake(state) if command is None else self._send(state, command)
 
@@ -324,6 +337,15 @@ class Navigator:
             room = max(nearest - robot.footprint.circumscribed, 0.0)
             cap = min(cap, wary_speed(robot.limits, config.corner_speed, room))
         return max(cap, min(0.15, robot.limits.v_max))
+
+    def _margins(self, state: RobotState) -> Margins:
+        """The margins, with what a heading error adds over the length of a stop."""
+        limits = self.robot.limits
+        stop = state.twist.v**2 / (2.0 * limits.v_brake)
+        ahead = abs(state.twist.v) * (self.config.latency + 2.0 * self.config.period)
+        return self.margins._replace(
+            standing=self.margins.standing + self.config.heading_error * (stop + ahead)
+        )
 
     # -- the end, and the stop --------------------------------------------------------------------
 

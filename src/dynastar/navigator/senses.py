@@ -31,6 +31,7 @@ class Senses:
         self._seen: dict[Pose2D, float] = {}  # the newest stamp of each sensor
         self._fresh = True
         self._corners = np.empty((0, 2))
+        self._jumped_to: Pose2D | None = None
 
     @property
     def last_scan(self) -> float:
@@ -42,10 +43,19 @@ class Senses:
         self.layer.set_grid(grid)
 
     def forget(self) -> None:
-        """Drops everything seen; the next scan starts afresh from where the robot stands."""
-        self.layer.forget()
+        """Drops what was seen, but for what was seen free where the robot stands."""
+        here = self._poses[-1].pose
+        self.layer.forget(here.x, here.y, self._own_disc)
         self.tracker.forget()
-        self._fresh = True
+
+    @property
+    def _own_disc(self) -> float:
+        """The radius (m) that is free at the start and not forgotten: the robot, and its blind range."""
+        return (
+            self.robot.footprint.circumscribed
+            + self.robot.lidar.range_min
+            + 2.0 * self.config.layer.resolution
+        )
 
     def place(self, state: RobotState) -> str | None:
         """Takes in where the robot is; what is wrong with that, in words, or None."""
@@ -58,7 +68,9 @@ class Senses:
                 return f"time went back by {-dt:.3f} s"
             if self._jumped(last, state, dt):
                 self._poses.clear()
-                self.forget()
+                self.layer.forget(0.0, 0.0, 0.0)
+                self.tracker.forget()
+                self._jumped_to = state.pose
         self._poses.append(state)
         while state.stamp - self._poses[0].stamp > HISTORY:
             self._poses.popleft()
@@ -81,15 +93,12 @@ class Senses:
             fault = fault or "no scan" + (f" for {age:.1f} s" if math.isfinite(age) else " yet")
         else:
             fault = None
-        shape, blind = self.robot.footprint, self.robot.lidar.range_min
         here = self._poses[-1].pose
-        self.layer.assume_free(
-            here.x,
-            here.y,
-            shape.circumscribed + blind + 2.0 * self.layer.config.resolution,
-            now,
-            self._fresh,
-        )
+        self.layer.assume_free(here.x, here.y, self._own_disc, now, self._fresh)
+        if self._jumped_to is not None:  # wherever that is, the robot stands there
+            inside = self.robot.footprint.inscribed
+            self.layer.assume_free(here.x, here.y, inside, now, fresh=True)
+            self._jumped_to = None
         self._fresh = self._fresh and not math.isfinite(age)
         self.layer.update(now)
         return fault

@@ -55,9 +55,14 @@ class ObstacleLayer:
         self._grid = grid
         self._bar()
 
-    def forget(self) -> None:
-        """Turns the whole window into unseen."""
-        self.free_at.fill(kernels.NEVER)
+    def forget(self, x: float, y: float, radius: float) -> None:
+        """Turns the window into unseen, but for what was seen free in the disc round the robot."""
+        kept = self.free_at.copy()
+        kernels.mark_disc(
+            kept, *self.origin, self.config.resolution, x, y, radius, math.nan, math.inf
+        )
+        inside = np.isnan(kept) & (self.free_at > self.hit_at)
+        self.free_at[~inside] = kernels.NEVER
         self.hit_at.fill(kernels.NEVER)
 
     def follow(self, x: float, y: float) -> None:
@@ -166,6 +171,7 @@ class ObstacleLayer:
         cells, on_map = self._map_cells(part)
         result = np.zeros(on_map.shape, np.bool_)
         if self._grid is not None:
+            result = ~on_map
             inside = cells[on_map]
             result[on_map] = self._grid.occupied[inside[:, 0], inside[:, 1]]
         return result
