@@ -186,12 +186,12 @@ def evaluate_window(robot, config, reach, samples, pose, twist, around, wish, ma
         at = pose
         stop = max(abs(v1) / limits.v_brake, abs(w1) / limits.omega_brake)
         must = reach + 0.5 * stop
-        gone, clear, strays, aim = 0.0, [], [], pose
+        gone, turned, clear, strays, aim, aim_turn = 0.0, 0.0, [], [], pose, 0.0
         for k in range(1, max(config.steps, math.ceil(must / step)) + 1):
             share = min(1.0, (k - 0.5) * step / reach)
             now = Twist(twist.v + share * (v1 - twist.v), twist.omega + share * (w1 - twist.omega))
             at = arc(at, now, step)
-            gone += abs(now.v) * step
+            gone, turned = gone + abs(now.v) * step, turned + now.omega * step
             free = clearance(at.x, at.y) - radius
             if free < margins.standing and k * step <= must:
                 refused[i] = 2
@@ -214,13 +214,13 @@ def evaluate_window(robot, config, reach, samples, pose, twist, around, wish, ma
                 same = [np.interp(place, index, column) for column in wish.path.T]
                 strays.append(math.dist(same, at[:2]))
             if gone <= 0.5 * gap_to_target:
-                aim = at
+                aim, aim_turn = at, turned
         if refused[i]:
             continue
         bearing = math.atan2(wish.target[1] - aim.y, wish.target[0] - aim.x)
         dist = clear[-1] if config.dist == "end" else min(clear)
         terms[i] = (
-            1.0 - abs(wrap_angle(bearing - aim.theta)) / math.pi,
+            1.0 - min(abs(wrap_angle(bearing - pose.theta) - aim_turn), math.pi) / math.pi,
             min(dist, config.clearance_cap) / config.clearance_cap,
             max(0.0, 1.0 - abs(max(v1, 0.0) - cap) / limits.v_max),
             1.0 - min(1.0, sum(strays) / max(len(strays), 1) / config.path_cap),
@@ -230,3 +230,32 @@ def evaluate_window(robot, config, reach, samples, pose, twist, around, wish, ma
     scaled = terms / np.where(total > 1e-9, total, np.inf)
     score = np.where(free, (scaled * np.array(config.weights)).sum(axis=1), -np.inf)
     return int(np.argmax(score)), refused, terms
+
+
+def drive_through(start, twist, wanted, ramp, stop, times, hold=0.0):
+    """(x, y) (n, 2) at ``times``: the speeds ramp to ``wanted``, hold, and ramp to zero."""
+    fine = np.linspace(0.0, max(times[-1], 1e-6), 20001)
+    step = fine[1] - fine[0]
+    t = fine[:-1] + 0.5 * step
+    rising = np.clip(t / ramp, 0.0, 1.0) if ramp > 0.0 else np.ones_like(t)
+    left = np.clip(1.0 - (t - ramp - hold) / max(stop, 1e-9), 0.0, 1.0)
+    v, omega = (a + (b - a) * rising for a, b in zip(twist, wanted, strict=True))
+    falling = np.where(t > ramp + hold, left, 1.0)
+    v, omega = v * falling, omega * falling
+    theta = start[2] + np.cumsum(omega) * step - 0.5 * omega * step
+    x = np.concatenate([[start[0]], start[0] + np.cumsum(v * np.cos(theta)) * step])
+    y = np.concatenate([[start[1]], start[1] + np.cumsum(v * np.sin(theta)) * step])
+    return np.column_stack([np.interp(times, fine, x), np.interp(times, fine, y)])
+
+
+def spare_gap(movers, spread, radius, where, times, moves, ahead):
+    """The least gap (m) to movers that keep on, stand or turn back, less what they may stray."""
+    least = math.inf
+    for x, y, vx, vy, r, top in movers:
+        speed = math.hypot(vx, vy)
+        top = max(top, speed) / speed if speed > 1e-3 else 0.0
+        for scale in (1.0, 0.0, -1.0):
+            at = np.outer(times + ahead, (vx, vy)) * scale * top + (x, y)
+            gaps = np.hypot(*(at - where).T) - radius - r
+            least = min(least, (gaps - spread * np.minimum(times + ahead, moves)).min())
+    return least

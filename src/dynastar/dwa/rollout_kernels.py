@@ -103,9 +103,11 @@ def roll_out(
             followed += 1
         if length <= 0.5 * target_gap:
             aim_x, aim_y, aim_theta = px, py, ptheta
-    off = math.atan2(target_y - aim_y, target_x - aim_x) - aim_theta
-    off = abs(math.atan2(math.sin(off), math.cos(off))) if target_gap > 1e-6 else 0.0
-    terms[HEADING] = 1.0 - off / math.pi
+    off = 0.0
+    if target_gap > 1e-6:  # turning the long way round is no way to the target
+        off = math.atan2(target_y - aim_y, target_x - aim_x) - theta
+        off = abs(math.atan2(math.sin(off), math.cos(off)) - (aim_theta - theta))
+    terms[HEADING] = 1.0 - min(off, math.pi) / math.pi
     terms[DIST] = min(end_clearance if at_end else least, clearance_cap) / clearance_cap
     speed = abs(sample_v) if turning else max(0.0, sample_v)
     terms[VEL] = max(0.0, 1.0 - abs(speed - v_cap) / v_scale)
