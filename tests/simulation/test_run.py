@@ -1,5 +1,6 @@
 import json
 import math
+import time
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 
@@ -274,8 +275,19 @@ def test_without_a_heading_the_robot_faces_the_first_leg():
     assert walled_off.theta == pytest.approx(0.0)
 
 
-def test_progress_goes_to_stderr(capsys):
-    run(scenario(), progress=True, navigator=Straight)
+def test_progress_goes_to_stderr_once_a_run_takes_long(capsys):
+    class Slow(Straight):
+        def set_goal(self, goals):
+            super().set_goal(goals)
+            self.waited = False
+
+        def command(self, state, scan):
+            if state.stamp > 0.5 and not self.waited:
+                time.sleep(0.7)
+                self.waited = True
+            return super().command(state, scan)
+
+    run(scenario(), progress=True, navigator=Slow)
     shown = capsys.readouterr()
     assert shown.out == ""
     assert "simulated s" in shown.err

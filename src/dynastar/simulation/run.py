@@ -88,7 +88,7 @@ def drive(
         unit="s",
         file=sys.stderr,
         disable=not progress,
-        delay=0.5,
+        delay=1e-6,  # nothing is shown of a mission that cannot begin
         bar_format="{desc}: {n:.1f} of at most {total:.0f} simulated s [{elapsed}]",
     ) as bar:
         while ending is None:
@@ -107,6 +107,7 @@ def drive(
                 world.step(command, ticks * config.period - world.time)
                 bar.update(config.period)
                 ending = referee.touched(world)
+        bar.refresh()
     outcome, reason = ending
     if outcome == "contact":
         recorder.contact(command, reason)
