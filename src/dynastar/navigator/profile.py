@@ -31,7 +31,9 @@ class SpeedProfile:
             np.minimum(limits.v_max, speed_limit), turning_speed(path, self._arc, limits)
         )
         speed[-1] = 0.0
-        speed = np.minimum.reduce([speed, np.append(speed[1:], 0.0), np.append(speed[:1], speed[:-1])])
+        speed = np.minimum.reduce(
+            [speed, np.append(speed[1:], 0.0), np.append(speed[:1], speed[:-1])]
+        )
         # v^2 + 2 b s may not exceed that of any later point.
         energy = speed**2 + twice_brake * self._arc
         ahead = np.minimum.accumulate(energy[::-1])[::-1] - twice_brake * self._arc
