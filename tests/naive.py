@@ -168,7 +168,10 @@ def evaluate_window(robot, config, reach, samples, pose, twist, around, wish, ma
     rows, columns = around.field.shape
     refused, terms = np.zeros(len(samples), int), np.zeros((len(samples), 4))
     gap_to_target = math.dist(wish.target, pose[:2])
-    cap = min(wish.v_cap, limits.v_max)
+    cap, v_scale = min(wish.v_cap, limits.v_max), limits.v_max
+    if config.normalisation == "window":
+        low, high = samples[:-1, 0].min(), samples[:-1, 0].max()
+        cap, v_scale = min(max(cap, low), high), max(high - low, 1e-6)
 
     def clearance(x, y):
         """Bilinear between the cells' centres, less what a distance can bend between them."""
@@ -181,6 +184,11 @@ def evaluate_window(robot, config, reach, samples, pose, twist, around, wish, ma
         d = np.array([1 - fy + r, fy - r]) @ corners @ np.array([1 - fx + c, fx - c])
         a = around.resolution
         return max(0.0, d - 0.5 * a) if d <= a else d - 0.25 * a * a / d
+
+    enough = config.clearance_cap
+    if config.clearance_of_path:
+        spare = min(clearance(x, y) for x, y in wish.path) - radius - margins.standing
+        enough = min(enough, max(spare, 0.03))
 
     for i, (v1, w1) in enumerate(samples):
         at = pose
@@ -221,8 +229,8 @@ def evaluate_window(robot, config, reach, samples, pose, twist, around, wish, ma
         dist = clear[-1] if config.dist == "end" else min(clear)
         terms[i] = (
             1.0 - min(abs(wrap_angle(bearing - pose.theta) - aim_turn), math.pi) / math.pi,
-            min(dist, config.clearance_cap) / config.clearance_cap,
-            max(0.0, 1.0 - abs(max(v1, 0.0) - cap) / limits.v_max),
+            min(dist, enough) / enough,
+            max(0.0, 1.0 - abs(max(v1, 0.0) - cap) / v_scale),
             1.0 - min(1.0, sum(strays) / max(len(strays), 1) / config.path_cap),
         )
     free = refused == 0

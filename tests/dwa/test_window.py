@@ -5,9 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from dynastar.clearance import distance_field
 from dynastar.dwa import DwaConfig, DynamicWindow, Margins, Surroundings, Wish
 from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import ROBOTS, slew
+from naive import evaluate_window
 
 PERIOD = 0.1
 MARGINS = Margins(0.05, 0.15, 0.1)
@@ -96,17 +98,14 @@ def test_samples_by_resolution_as_printed():
     assert window.reach == PERIOD
 
 
-@pytest.mark.parametrize("normalisation", ["sum", "range"])
+@pytest.mark.parametrize("normalisation", ["sum", "range", "window"])
+@pytest.mark.parametrize("of_path", [False, True])
 @pytest.mark.parametrize("dist", ["smallest", "end"])
 @pytest.mark.parametrize("seed", range(4))
-def test_the_choice_is_that_of_a_plain_evaluation(normalisation, dist, seed):
-    from naive import evaluate_window
-
+def test_the_choice_is_that_of_a_plain_evaluation(normalisation, of_path, dist, seed):
     rng = np.random.default_rng(seed)
     closed = rng.random((200, 200)) < 0.002
     closed[85:115, 85:115] = False
-    from dynastar.clearance import distance_field
-
     movers = np.array([[7.0, 5.5, -0.3, 0.0, 0.3, 0.3]])
     around = OPEN._replace(field=distance_field(closed, 0.05), movers=movers)
     config = DwaConfig(
@@ -114,7 +113,7 @@ def test_the_choice_is_that_of_a_plain_evaluation(normalisation, dist, seed):
         dist=dist,
         v_samples=7,
         omega_samples=9,
-        clearance_of_path=False,
+        clearance_of_path=of_path,
     )
     twist = Twist(0.4, 0.1)
     window, choice = choose("paper", twist, config, around)

@@ -1,0 +1,157 @@
+"""The chart: the map and what was seen, for planning."""
+
+import math
+
+import numpy as np
+import pytest
+
+from dynastar.errors import GoalOccupied, NoPath
+from dynastar.grid import GridFrame, OccupancyGrid
+from dynastar.navigator import NavigatorConfig
+from dynastar.navigator.chart import Chart
+from dynastar.obstacles import ObstacleLayer
+from dynastar.obstacles.layer import SEEN_FREE, SEEN_OCCUPIED
+from dynastar.planning import GridPlanner
+
+START, GOAL = (1.0, 3.0), (7.0, 3.0)
+CONFIG = NavigatorConfig(comfort=0.2)
+
+
+def room(values=None, yaw=0.0, **masks):
+    """8 x 6 m in cells of 0.1 m with a wall all round."""
+    if values is None:
+        values = np.zeros((60, 80), np.int8)
+    values[[0, -1]] = values[:, [0, -1]] = 100
+    return OccupancyGrid(values, GridFrame(0.1, 0.0, 0.0, yaw), **masks)
+
+
+def chart(grid=None, config=CONFIG):
+    return Chart(room() if grid is None else grid, config, 0.3, 0.25)
+
+
+def layer_showing(state, x0, y0, x1, y1, centre=(4.0, 3.0), frame=None):
+    """A layer round ``centre`` that shows a box of the frame, by default the world's, as ``state``."""
+    layer = ObstacleLayer()
+    layer.follow(*centre)
+    a = layer.config.resolution
+    rows, columns = np.mgrid[: len(layer.states), : len(layer.states)]
+    points = np.stack(
+        [(columns + 0.5) * a + layer.origin[0], (rows + 0.5) * a + layer.origin[1]], 2
+    )
+    if frame is not None:
+        cells = frame.points_to_grid(points.reshape(-1, 2)).reshape(points.shape)
+        points = cells[..., ::-1] * frame.resolution
+    x, y = points[..., 0], points[..., 1]
+    layer.states[(x0 <= x) & (x < x1) & (y0 <= y) & (y < y1)] = state
+    return layer
+
+
+def least_distance(path, x, y):
+    points = path.resampled(0.0, path.length, 0.02)
+    return np.hypot(points[:, 0] - x, points[:, 1] - y).min()
+
+
+def test_what_was_seen_is_gone_round_until_it_is_forgotten():
+    made = chart()
+    straight = made.plan(START, GOAL, explored=False).path
+    assert straight.length == pytest.approx(6.0, abs=0.01)
+    assert made.take_in(layer_showing(SEEN_OCCUPIED, 3.8, 2.6, 4.2, 3.4))
+    assert made.blocked_at(straight.points) == pytest.approx(2.8 - 0.25, abs=0.15)
+    around = made.plan(START, GOAL, explored=False).path
+    assert around.length > 6.1
+    assert made.blocked_at(around.points) is None
+    assert least_distance(around, 4.0, 3.35) >= 0.25
+    made.forget()
+    assert not made.seen.any()
+    assert made.plan(START, GOAL, explored=False).path.length == pytest.approx(6.0, abs=0.01)
+
+
+def test_what_is_seen_free_again_is_no_longer_in_the_way():
+    made = chart()
+    box = 3.8, 2.6, 4.2, 3.4
+    assert made.take_in(layer_showing(SEEN_OCCUPIED, *box))
+    assert not made.take_in(layer_showing(SEEN_OCCUPIED, *box))  # nothing new
+    assert not made.take_in(ObstacleLayer())  # nothing seen changes nothing
+    assert made.take_in(layer_showing(SEEN_FREE, *box))
+    assert not made.seen.any()
+
+
+def test_what_the_map_shows_anyway_is_not_marked_twice():
+    values = np.zeros((60, 80), np.int8)
+    values[20:40, 40:44] = 100
+    made = chart(room(values))
+    assert not made.take_in(layer_showing(SEEN_OCCUPIED, 4.0, 2.0, 4.4, 4.0))
+    assert not made.take_in(layer_showing(SEEN_OCCUPIED, 3.92, 2.0, 4.0, 4.0))  # a cell before it
+
+
+def test_unknown_space_seen_free_is_planned_through_and_a_keepout_never():
+    values = np.zeros((60, 80), np.int8)
+    values[:, 35:45] = -1
+    seen = layer_showing(SEEN_FREE, 3.0, 0.3, 5.0, 5.7)
+    made = chart(room(values.copy()))
+    with pytest.raises(NoPath):
+        made.plan(START, GOAL, explored=False)
+    assert made.take_in(seen)
+    assert made.plan(START, GOAL, explored=False).path.length == pytest.approx(6.0, abs=0.01)
+    keepout = np.zeros((60, 80), bool)
+    keepout[:, 38:42] = True
+    barred = chart(room(values, keepout=keepout))
+    barred.take_in(seen)
+    with pytest.raises(NoPath):
+        barred.plan(START, GOAL, explored=False)
+
+
+@pytest.mark.parametrize("yaw", [0.7, -2.0])
+def test_a_map_that_is_turned_has_what_was_seen_in_the_right_place(yaw):
+    made = chart(room(yaw=yaw))
+    frame = made.frame
+    centre = frame.to_world(30.0, 40.0)
+    made.take_in(layer_showing(SEEN_OCCUPIED, 3.8, 2.6, 4.2, 3.4, centre, frame))
+    rows, columns = np.nonzero(made.seen)
+    assert (rows.min(), rows.max()) == pytest.approx((26, 33), abs=1)
+    assert (columns.min(), columns.max()) == pytest.approx((38, 41), abs=1)
+    assert len(rows) >= 0.9 * 8 * 4
+
+
+def test_the_planners_know_after_many_sights_what_fresh_ones_would():
+    made, rng = chart(), np.random.default_rng(4)
+    for _ in range(8):
+        x, y = rng.uniform(0.5, 7.0), rng.uniform(0.5, 5.0)
+        state = rng.choice([SEEN_OCCUPIED, SEEN_OCCUPIED, SEEN_FREE])
+        made.take_in(layer_showing(state, x, y, x + rng.uniform(0.1, 1.0), y + 0.4))
+    fresh_grid = OccupancyGrid(np.where(made.blocked, 100, 0).astype(np.int8), made.frame)
+    for planner in made.planners:
+        fresh = GridPlanner(fresh_grid, planner.radius, "blocked", CONFIG.planner)
+        assert np.array_equal(planner.blocked, made.blocked)
+        assert np.array_equal(planner.inflated, fresh.inflated)
+
+
+def test_there_is_room_to_spare_where_there_is_room():
+    values = np.zeros((60, 80), np.int8)
+    values[:28, 38:42] = 100
+    values[32:, 38:42] = 100  # a door of 0.4 m
+    with pytest.raises(NoPath):
+        chart(room(values)).plan(START, GOAL, explored=False)
+    values = np.zeros((60, 80), np.int8)
+    values[:27, 38:42] = 100
+    values[33:, 38:42] = 100  # a door of 0.6 m: only just
+    assert chart(room(values)).plan(START, GOAL, explored=False).radius == 0.25
+    assert chart().plan(START, GOAL, explored=False).radius == pytest.approx(0.5)
+
+
+def test_a_goal_that_is_seen_occupied_is_said():
+    made = chart()
+    made.take_in(layer_showing(SEEN_OCCUPIED, 6.8, 2.8, 7.2, 3.2))
+    with pytest.raises(GoalOccupied):
+        made.plan(START, GOAL, explored=False)
+
+
+def test_coarse_maps_are_planned_on_finer_and_speed_limits_go_along():
+    limit = np.full((6, 8), np.inf)
+    limit[:, 4:] = 0.5
+    grid = OccupancyGrid(np.zeros((6, 8), np.int8), GridFrame(1.0), speed_limit=limit)
+    made = chart(grid)
+    assert made.frame.resolution == pytest.approx(0.1)
+    assert made.blocked.shape == (60, 80)
+    found = made.speed_limit(np.array([(3.9, 3.0), (4.1, 3.0), (-1.0, 3.0), (7.9, 99.0)]))
+    assert found.tolist() == [math.inf, 0.5, math.inf, math.inf]
