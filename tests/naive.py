@@ -168,10 +168,10 @@ def evaluate_window(robot, config, reach, samples, pose, twist, around, wish, ma
     rows, columns = around.field.shape
     refused, terms = np.zeros(len(samples), int), np.zeros((len(samples), 4))
     gap_to_target = math.dist(wish.target, pose[:2])
-    cap, v_scale = min(wish.v_cap, limits.v_max), limits.v_max
+    cap, v_scale = limits.v_max, limits.v_max
     if config.normalisation == "window":
         low, high = samples[:-1, 0].min(), samples[:-1, 0].max()
-        cap, v_scale = min(max(cap, low), high), max(high - low, 1e-6)
+        cap, v_scale = min(max(min(wish.v_cap, limits.v_max), low), high), max(high - low, 1e-6)
 
     def clearance(x, y):
         """Bilinear between the cells' centres, less what a distance can bend between them."""

@@ -6,14 +6,23 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dynastar.clearance import distance_field
-from dynastar.dwa import stop_kernels
+from dynastar.dwa import Surroundings, stop_kernels
 from dynastar.dwa.clearance_kernels import centre_clearance, footprint_clearance
+from dynastar.dwa.dwa import Body, Margins
 from dynastar.robot import Footprint, Limits, box
 
 RESOLUTION, SIDE = 0.05, 80
 DISC, BOX = Footprint.disc(0.3), box(0.5, 0.4)
 LIMITS = Limits(1.5, 1.5, 1.0, 1.5, 1.0, 1.5, -0.5)
 NOBODY = np.empty((0, 6))
+
+
+def body_of(footprint):
+    return Body(footprint.vertices, footprint.inscribed, footprint.circumscribed)
+
+
+def round_about(field, movers=NOBODY):
+    return Surroundings(field, 0.0, 0.0, RESOLUTION, movers)
 
 
 def world(seed, share=0.01):
@@ -40,8 +49,7 @@ def true_clearance(centres, footprint, x, y, theta):
 @pytest.mark.parametrize("footprint", [DISC, BOX], ids=["disc", "box"])
 def test_clearance_is_a_close_lower_bound(footprint, seed, x, y, theta):
     field, centres = world(seed)
-    shape = footprint.vertices, footprint.inscribed, footprint.circumscribed
-    found = footprint_clearance(field, 0.0, 0.0, RESOLUTION, *shape, 0.3, x, y, theta)
+    found = footprint_clearance(round_about(field), body_of(footprint), 0.3, x, y, theta)
     truth = true_clearance(centres, footprint, x, y, theta)
     if footprint.is_disc or truth > 0.0:
         assert found <= truth + 1e-6
@@ -67,10 +75,9 @@ def test_clearance_off_the_window_is_none():
 @settings(max_examples=300, deadline=None)
 def test_a_clear_arc_is_clear_everywhere(seed, theta, length, angle, footprint):
     field, centres = world(seed, 0.004)
-    shape = footprint.vertices, footprint.inscribed, footprint.circumscribed
     margin = 0.05
     clear = stop_kernels.arc_is_clear(
-        field, 0.0, 0.0, RESOLUTION, *shape, margin, 2.0, 2.0, theta, length, angle, 1.0
+        round_about(field), body_of(footprint), margin, 1.0, 2.0, 2.0, theta, length, angle
     )
     along = [
         true_clearance(
@@ -87,29 +94,11 @@ def test_a_clear_arc_is_clear_everywhere(seed, theta, length, angle, footprint):
 
 
 def certify(field, movers, v0, omega0, v, omega, period=0.1, linger=0.0):
-    shape = DISC.vertices, DISC.inscribed, DISC.circumscribed
+    margins = Margins(standing=0.05, movers=0.1, spread=0.1, linger=linger)
+    state = (2.0, 2.0, 0.0, v0, omega0)
+    around = round_about(field, movers)
     return stop_kernels.certify(
-        field,
-        0.0,
-        0.0,
-        RESOLUTION,
-        *shape,
-        0.05,
-        1.0,
-        movers,
-        0.1,  # spread
-        linger,
-        0.1,  # margin to movers
-        0.0,  # ahead
-        2.0,
-        2.0,
-        0.0,
-        v0,
-        omega0,
-        v,
-        omega,
-        LIMITS,
-        period,
+        around, body_of(DISC), margins, 1.0, 0.0, state, v, omega, LIMITS, period
     )
 
 
@@ -154,16 +143,17 @@ def test_movers_are_kept_clear_of_in_every_way_they_may_go(x, y, vx, vy, v, omeg
     radius, spread, ramp = 0.4, 0.1, 0.1
     stop = max(abs(v) / LIMITS.v_brake, abs(omega) / LIMITS.omega_brake)
     mover = np.array([[x, y, vx, vy, 0.3, 0.0]])
-    clear = stop_kernels.movers_stay_clear(
-        mover, spread, radius, 0.0, 0.0, 0.3, v, omega, v, omega, ramp, stop, ramp + stop, 0.0
+    state = (0.0, 0.0, 0.3, v, omega)
+    touch = stop_kernels.first_touch(
+        mover, spread, radius, state, v, omega, ramp, stop, ramp + stop, 0.0
     )
     nearest = math.inf
     for way in (1.0, 0.0, -1.0):
         for t in np.linspace(0.0, ramp + stop, 400):
-            px, py = stop_kernels.position_on_stop(0.0, 0.0, 0.3, v, omega, v, omega, ramp, stop, t)
+            px, py = stop_kernels.position_on_stop(state, v, omega, ramp, stop, t)
             gap = math.hypot(x + way * vx * t - px, y + way * vy * t - py)
             nearest = min(nearest, gap - radius - 0.3 - spread * t)
     if nearest > 0.02:
-        assert clear
+        assert touch == math.inf
     if nearest < -0.1 and math.hypot(x, y) > radius + 0.3 + 0.2:
-        assert not clear
+        assert touch <= ramp + stop

@@ -56,7 +56,7 @@ def test_samples_and_commands_stay_inside_the_window(name, v, omega, may_reverse
     ):
         if low_end < 0.0 < high_end:
             assert (values == 0.0).any()
-    for command in window._commands[:n]:
+    for command in window._buffers.commands[:n]:
         assert abs(command[0]) <= limits.v_max + 1e-9
         assert abs(command[1]) <= limits.omega_max + 1e-9
         rate = max(limits.v_accel, limits.v_brake)

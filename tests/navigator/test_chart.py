@@ -84,6 +84,26 @@ def test_what_the_map_shows_anyway_is_not_marked_twice():
     assert not made.take_in(layer_showing(SEEN_OCCUPIED, 3.92, 2.0, 4.0, 4.0))  # a cell before it
 
 
+def test_the_edge_of_the_map_is_not_marked_twice():
+    """What stands outside is seen in the map's last cells; a way along the edge stays open."""
+    bare = OccupancyGrid(np.zeros((60, 80), np.int8), GridFrame(0.1, 0.0, 0.0, 0.0))
+    on = chart(bare)
+    on.take_in(layer_showing(SEEN_OCCUPIED, 2.0, 5.9, 6.0, 6.2, centre=(4.0, 4.0)))
+    assert not on.seen.any()
+    on.take_in(layer_showing(SEEN_OCCUPIED, 2.0, 5.7, 6.0, 6.2, centre=(4.0, 4.0)))
+    assert on.seen.any()
+
+
+def test_room_to_spare_is_not_worth_a_detour():
+    values = np.zeros((60, 80), np.int8)
+    values[:, 38:42] = 100
+    values[28:33, 38:42] = 0  # 0.5 m wide on the straight way, and a wide gap higher up
+    values[45:57, 38:42] = 0
+    plan = chart(room(values), CONFIG).plan(START, GOAL, explored=False)
+    assert plan.radius == 0.25
+    assert plan.path.length < 6.1
+
+
 def test_unknown_space_seen_free_is_planned_through_and_a_keepout_never():
     values = np.zeros((60, 80), np.int8)
     values[:, 35:45] = -1

@@ -96,3 +96,11 @@ def test_a_speed_limit_is_kept_wherever_the_path_is_under_it(line, allowed, begi
         at = path.at(s)
         if at[0] > begin + 0.01:
             assert found.at(s) <= allowed + 1e-6
+
+
+def test_a_limit_below_the_slowest_holds():
+    _, found = profile(
+        [(0, 0), (6, 0)], speed_limit=lambda at: np.where(at[:, 0] > 3.0, 0.04, NONE)
+    )
+    assert found.at(4.0) == pytest.approx(0.04)
+    assert found.at(1.0) > 0.5

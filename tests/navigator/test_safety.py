@@ -163,7 +163,6 @@ def random_settings(random, robot, narrowest):
         "deviation": random.uniform(0.3, 2.0),
         "stuck_time": random.uniform(0.5, 4.0),
         "mover_speed": random.choice([0.0, random.uniform(0.0, 1.0)]),
-        "corner_speed": random.choice([0.0, random.uniform(0.0, 1.0)]),
         "layer": {
             "resolution": random.uniform(0.04, 0.12),
             "size": random.uniform(6.0, 9.0),

@@ -44,9 +44,8 @@ def execute(arguments: argparse.Namespace) -> int:
 def _print_failures(rows: list[dict[str, Any]]) -> None:
     failed = [row for row in rows if row["outcome"] != "arrived"]
     for row in failed[:SHOWN_FAILURES]:
-        print(
-            f"mission {row['number']}: {row['outcome']}, {row.get('reason') or 'no reason given'}"
-        )
+        reason = (row.get("reason") or "no reason given").partition("\n")[0]
+        print(f"mission {row['number']}: {row['outcome']}, {reason}")
     if len(failed) > SHOWN_FAILURES:
         print(f"and {len(failed) - SHOWN_FAILURES} more that did not arrive")
     if failed:

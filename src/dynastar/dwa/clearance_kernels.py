@@ -60,13 +60,14 @@ def polygon_distance(vertices, px, py):
 
 
 @njit(cache=True)
-def footprint_clearance(
-    field, x0, y0, resolution, vertices, inscribed, circumscribed, enough, x, y, theta
-):
+def footprint_clearance(around, body, enough, x, y, theta):
     """A lower bound of the distance (m) from the footprint to the nearest closed cell's centre.
 
-    Exact for polygons up to ``enough`` metres: the circles decide first, then every closed cell near.
+    ``around`` is a ``Surroundings``, ``body`` a ``Body``. Exact for polygons up to ``enough``
+    metres: the circles decide first, then every closed cell near.
     """
+    field, x0, y0, resolution, _ = around
+    vertices, inscribed, circumscribed = body
     d = centre_clearance(field, x0, y0, resolution, x, y)
     if len(vertices) == 0 or d - circumscribed >= enough:
         return d - circumscribed

@@ -7,14 +7,14 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.dwa import stop_kernels, window_kernels
+from dynastar.dwa import manoeuvre_kernels, stop_kernels, window_kernels
 from dynastar.dwa.clearance_kernels import footprint_clearance, path_clearance
 from dynastar.dwa.config import DwaConfig
 from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import Robot, slew
 
 Floats = npt.NDArray[np.float64]
-EVADE_AHEAD = 5.0  # s that a way out of movers' way looks ahead
+EVADE_AHEAD = 8.0  # s that a way out of movers' way looks ahead
 LEAST_CAP = 0.03  # m, so that dist always tells nearer from farther
 TERMS = ("heading", "dist", "vel", "simi")
 REFUSALS = {
@@ -39,6 +39,14 @@ class Surroundings(NamedTuple):
     movers: Floats
 
 
+class Body(NamedTuple):
+    """A footprint as the kernels take it, see ``Footprint``."""
+
+    vertices: Floats
+    inscribed: float
+    circumscribed: float
+
+
 class Wish(NamedTuple):
     """Where the robot should go: the target, the path from here every ``spacing`` metres, a speed cap."""
 
@@ -58,6 +66,40 @@ class Margins(NamedTuple):
     movers: float
     spread: float
     linger: float = 0.0
+
+
+class Span(NamedTuple):
+    """How far a sample's trajectory is looked at: reached in ``reach`` s, scored over ``horizon`` s."""
+
+    reach: float
+    horizon: float
+    steps: int
+
+
+class Scoring(NamedTuple):
+    """What the terms of Eq. 9 are measured by; see ``Wish`` and ``DwaConfig``."""
+
+    target_x: float
+    target_y: float
+    path: Floats
+    spacing: float
+    clearance_cap: float
+    path_cap: float
+    at_end: bool
+    v_cap: float
+    v_best: float
+    v_scale: float
+    turning: bool
+
+
+class Buffers(NamedTuple):
+    """A window's arrays: samples and commands (n, 2), terms (n, 4), refusals and scores (n,)."""
+
+    samples: Floats
+    commands: Floats
+    terms: Floats
+    refused: npt.NDArray[np.int64]
+    score: Floats
 
 
 @dataclass(frozen=True)
@@ -106,27 +148,17 @@ class DynamicWindow:
         self._counts = n_v, n_w
         n = (n_v + 1) * (n_w + 1) + 1
         self._speeds, self._rates = np.empty(n_v + 1), np.empty(n_w + 1)
-        self._samples, self._commands = np.empty((n, 2)), np.empty((n, 2))
-        self._terms, self._score = np.zeros((n, 4)), np.empty(n)
-        self._refused = np.zeros(n, np.int64)
+        self._buffers = Buffers(
+            np.empty((n, 2)), np.empty((n, 2)), np.zeros((n, 4)), np.zeros(n, np.int64), np.empty(n)
+        )
+        shape = robot.footprint
+        self._body = Body(shape.vertices, shape.inscribed, shape.circumscribed)
+        self._span = Span(self.reach, float(config.horizon), int(config.steps))
         self._weights = np.array(config.weights, dtype=np.float64)
 
     def clearance(self, around: Surroundings, pose: Pose2D, enough: float = 0.5) -> float:
         """Metres, up to ``enough``, from the footprint to the nearest centre of a closed cell."""
-        shape = self.robot.footprint
-        return float(
-            footprint_clearance(
-                around.field,
-                around.x0,
-                around.y0,
-                around.resolution,
-                shape.vertices,
-                shape.inscribed,
-                shape.circumscribed,
-                enough,
-                *pose,
-            )
-        )
+        return float(footprint_clearance(around, self._body, enough, *pose))
 
     def choose(
         self,
@@ -144,7 +176,8 @@ class DynamicWindow:
         ``command`` is None if no sample is admissible. ``turn_only`` asks for turning in place;
         without ``may_reverse`` the speed stays >= 0.
         """
-        config, limits, shape = self.config, self.robot.limits, self.robot.footprint
+        config, limits = self.config, self.robot.limits
+        samples = self._buffers.samples
         bearing = math.atan2(wish.target[1] - pose.y, wish.target[0] - pose.x) - pose.theta
         turning = turn_only or abs(math.remainder(bearing, math.tau)) > config.turn_in_place
         v_min = limits.v_min if may_reverse else 0.0
@@ -159,54 +192,49 @@ class DynamicWindow:
             *self._counts,
             self._speeds,
             self._rates,
-            self._samples,
+            samples,
         )
-        v_scale = limits.v_max
+        v_best, v_scale = 0.0 if turning else limits.v_max, limits.v_max  # vel is v / v_max
         if config.normalisation == "window":
-            low, high = self._samples[0, 0], self._samples[n - 2, 0]
+            low, high = float(samples[0, 0]), float(samples[n - 2, 0])
             v_cap, v_scale = min(max(v_cap, low), high), max(high - low, 1e-6)
+            v_best = v_cap
         cap = config.clearance_cap
         if config.clearance_of_path:
             free = path_clearance(around.field, around.x0, around.y0, around.resolution, wish.path)
-            cap = min(cap, max(free - shape.inscribed - margins.standing, LEAST_CAP))
-        allowed = self.clearance(around, pose, margins.standing + 0.1)
-        best = window_kernels.evaluate(
-            self._samples,
-            n,
-            self._commands,
-            self._terms,
-            self._refused,
-            self._score,
-            *pose,
-            *twist,
-            limits,
-            self.period,
-            self.reach,
-            config.horizon,
-            config.steps,
-            around.field,
-            around.x0,
-            around.y0,
-            around.resolution,
-            shape.vertices,
-            shape.inscribed,
-            shape.circumscribed,
-            margins.standing,
-            allowed,
-            around.movers,
-            margins.spread,
-            margins.linger,
-            margins.movers,
-            ahead,
-            *wish.target,
+            cap = min(cap, max(free - self._body.inscribed - margins.standing, LEAST_CAP))
+        scoring = Scoring(
+            float(wish.target[0]),
+            float(wish.target[1]),
             wish.path,
             wish.spacing,
-            cap,
+            float(cap),
             config.path_cap,
             config.dist == "end",
-            v_cap,
-            v_scale,
+            float(v_cap),
+            float(v_best),
+            float(v_scale),
             turning,
+        )
+        state = (*pose, *twist)
+        allowed = self.clearance(around, pose, margins.standing + 0.1)
+        may_pass = len(around.movers) > 0 and manoeuvre_kernels.may_pass(
+            state, wish.path, EVADE_AHEAD, around, self._body, margins, allowed, ahead, limits
+        )
+        best = window_kernels.evaluate(
+            self._buffers,
+            n,
+            state,
+            self._span,
+            around,
+            self._body,
+            margins,
+            allowed,
+            ahead,
+            scoring,
+            limits,
+            self.period,
+            may_pass,
             self._weights,
             config.normalisation == "sum",
         )
@@ -222,28 +250,18 @@ class DynamicWindow:
         speed: float = 0.2,
     ) -> Twist | None:
         """A step towards driving back at up to ``speed`` m/s, as straight as has a certified stop."""
-        limits, shape = self.robot.limits, self.robot.footprint
+        limits = self.robot.limits
         v = slew(twist.v, max(limits.v_min, -speed), limits.v_accel, limits.v_brake, self.period)
         allowed = self.clearance(around, pose, margins.standing + 0.1)
         for wanted in (0.0, 0.15, -0.15, 0.4, -0.4):  # rad/s, straight first
             omega = slew(twist.omega, wanted, limits.omega_accel, limits.omega_brake, self.period)
             code = stop_kernels.certify(
-                around.field,
-                around.x0,
-                around.y0,
-                around.resolution,
-                shape.vertices,
-                shape.inscribed,
-                shape.circumscribed,
-                margins.standing,
+                around,
+                self._body,
+                margins,
                 allowed,
-                around.movers,
-                margins.spread,
-                margins.linger,
-                margins.movers,
                 ahead,
-                *pose,
-                *twist,
+                (*pose, *twist),
                 v,
                 omega,
                 limits,
@@ -254,67 +272,48 @@ class DynamicWindow:
         return None
 
     def evade(
-        self, pose: Pose2D, twist: Twist, around: Surroundings, margins: Margins, ahead: float = 0.0
+        self,
+        pose: Pose2D,
+        twist: Twist,
+        around: Surroundings,
+        path: Floats,
+        margins: Margins,
+        ahead: float = 0.0,
     ) -> Twist | None:
-        """A way out for a robot that movers are about to run into, if there is one better than braking.
+        """The first step of a way that movers leave clear, or clearer than braking; or None.
 
-        Whatever it is, it could stop for everything that stands. While the robot can come to rest
-        before a touch, only a way that stays clear will do: it should not be touched as it moves.
+        Whatever it is, the robot could stop for everything that stands.
         """
-        limits, shape = self.robot.limits, self.robot.footprint
-        n = window_kernels.sample_window(
-            *twist,
-            0.0,
-            limits.v_max,
-            limits.omega_max,
-            limits,
-            self.reach,
-            *self._counts,
-            self._speeds,
-            self._rates,
-            self._samples,
-        )
-        best, gap, braked, braking = window_kernels.evade(
-            self._samples,
-            n,
-            self._commands,
-            *pose,
-            *twist,
-            limits,
-            self.period,
-            self.reach,
-            around.field,
-            around.x0,
-            around.y0,
-            around.resolution,
-            shape.vertices,
-            shape.inscribed,
-            shape.circumscribed,
-            margins.standing,
-            self.clearance(around, pose, margins.standing + 0.1),
-            around.movers,
-            ahead,
+        found, v, omega, braked = manoeuvre_kernels.way_out(
+            (*pose, *twist),
+            path,
             EVADE_AHEAD,
+            2.0 * margins.movers,
+            around,
+            self._body,
+            margins,
+            around._replace(movers=around.movers[:0]),
+            self.clearance(around, pose, margins.standing + 0.1),
+            ahead,
+            self.robot.limits,
+            self.period,
         )
-        if best < 0 or braked > margins.movers or gap < braked + 0.05:
-            return None
-        if braking > 0.0 and gap < 2.0 * margins.movers:
-            return None
-        return Twist(*self._commands[best].tolist())
+        return Twist(v, omega) if found and braked <= margins.movers else None
 
     def _explain(self, best: int, n: int) -> Choice:
-        refused = self._refused[:n]
+        samples, commands, all_terms, all_refused, score = self._buffers
+        refused = all_refused[:n]
         counts = np.bincount(refused, minlength=max(REFUSALS) + 1)
         shares = dict.fromkeys(TERMS, 0.0)
         command = sample = None
         if best >= 0:
             command, sample = (
-                Twist(*self._commands[best].tolist()),
-                Twist(*self._samples[best].tolist()),
+                Twist(*commands[best].tolist()),
+                Twist(*samples[best].tolist()),
             )
-            terms = self._terms[best]
+            terms = all_terms[best]
             if self.config.normalisation == "sum":
-                total = self._terms[:n][refused == 0].sum(axis=0)
+                total = all_terms[:n][refused == 0].sum(axis=0)
                 terms = np.divide(terms, total, out=np.zeros(4), where=total > 1e-9)
             shares = dict(zip(TERMS, (self._weights * terms).tolist(), strict=True))
         return Choice(
@@ -322,8 +321,8 @@ class DynamicWindow:
             sample,
             shares,
             {words: int(counts[code]) for code, words in REFUSALS.items()},
-            self._samples[:n],
+            samples[:n],
             refused,
-            self._terms[:n],
-            self._score[:n],
+            all_terms[:n],
+            score[:n],
         )

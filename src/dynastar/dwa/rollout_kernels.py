@@ -13,51 +13,24 @@ HEADING, DIST, VEL, SIMI = range(4)
 
 @njit(cache=True)
 def roll_out(
-    sample_v,
-    sample_w,
-    x,
-    y,
-    theta,
-    v0,
-    omega0,
-    reach,
-    horizon,
-    steps,
-    field,
-    x0,
-    y0,
-    resolution,
-    radius,
-    margin,
-    allowed,
-    movers,
-    mover_margin,
-    ahead,
-    target_x,
-    target_y,
-    path,
-    spacing,
-    clearance_cap,
-    path_cap,
-    at_end,
-    v_cap,
-    v_scale,
-    turning,
-    b_v,
-    b_w,
-    terms,
+    sample_v, sample_w, state, span, around, body, margins, allowed, ahead, wish, limits, terms
 ):
     """Rolls out one sample and writes its four raw terms, each in [0, 1]; returns a refusal code.
 
     The speeds go to the sample's over ``reach`` seconds and hold from there (Eq. 4, exact arcs).
     Eq. 7: along that very trajectory the first contact has to lie beyond where a stop from the
-    sample's speeds would end. ``path`` (n, 2) is the global path every ``spacing`` metres from here.
+    sample's speeds would end. The other arguments are those of ``window_kernels.evaluate``.
     """
+    x, y, theta, v0, omega0 = state
+    reach, horizon, steps = span
+    field, x0, y0, resolution, movers = around
+    radius, margin = body.inscribed, margins.standing
+    path, spacing = wish.path, wish.spacing
     h = horizon / steps
-    stop = max(abs(sample_v) / b_v, abs(sample_w) / b_w)
+    stop = max(abs(sample_v) / limits.v_brake, abs(sample_w) / limits.omega_brake)
     must = reach + 0.5 * stop  # holding the speeds for half the stopping time covers the stop's arc
     total = max(steps, int(math.ceil(must / h)))
-    target_gap = math.hypot(target_x - x, target_y - y)
+    target_gap = math.hypot(wish.target_x - x, wish.target_y - y)
     px, py, ptheta = x, y, theta
     length = 0.0
     least = end_clearance = np.inf
@@ -86,7 +59,7 @@ def roll_out(
                 )
                 - radius
                 - movers[m, 4]
-                - mover_margin
+                - margins.movers
             )
             if gap <= 0.0 and k * h <= must + 0.5 * stop and (abs(sample_v) > 0.0 or abs(v0) > 0.0):
                 return MOVER
@@ -105,13 +78,15 @@ def roll_out(
             aim_x, aim_y, aim_theta = px, py, ptheta
     off = 0.0
     if target_gap > 1e-6:  # turning the long way round is no way to the target
-        off = math.atan2(target_y - aim_y, target_x - aim_x) - theta
+        off = math.atan2(wish.target_y - aim_y, wish.target_x - aim_x) - theta
         off = abs(math.atan2(math.sin(off), math.cos(off)) - (aim_theta - theta))
     terms[HEADING] = 1.0 - min(off, math.pi) / math.pi
-    terms[DIST] = min(end_clearance if at_end else least, clearance_cap) / clearance_cap
-    speed = abs(sample_v) if turning else max(0.0, sample_v)
-    terms[VEL] = max(0.0, 1.0 - abs(speed - v_cap) / v_scale)
-    terms[SIMI] = 1.0 - min(1.0, strayed / max(followed, 1) / path_cap)
+    terms[DIST] = (
+        min(end_clearance if wish.at_end else least, wish.clearance_cap) / wish.clearance_cap
+    )
+    speed = abs(sample_v) if wish.turning else max(0.0, sample_v)
+    terms[VEL] = max(0.0, 1.0 - abs(speed - wish.v_best) / wish.v_scale)
+    terms[SIMI] = 1.0 - min(1.0, strayed / max(followed, 1) / wish.path_cap)
     return ADMISSIBLE
 
 

@@ -2,12 +2,14 @@
 
 import math
 
+import numpy as np
 from numba import njit
 
 from dynastar.dwa.clearance_kernels import footprint_clearance
 
 ADMISSIBLE, NO_STOP, CONTACT, MOVER, RUN_OVER = 0, 1, 2, 3, 4
 LEAVING = 0.2  # a footprint that is too near already has to gain this much clearance per metre
+TICK = 0.15  # s between the looks at where movers are
 WAYS = (1.0, 0.0, -1.0)  # a mover keeps its velocity, stands, or turns back
 
 
@@ -32,50 +34,21 @@ def arc(x, y, theta, length, angle):
 
 
 @njit(cache=True)
-def arc_is_clear(
-    field,
-    x0,
-    y0,
-    resolution,
-    vertices,
-    inscribed,
-    circumscribed,
-    margin,
-    x,
-    y,
-    theta,
-    length,
-    angle,
-    allowed,
-):
+def arc_is_clear(around, body, margin, allowed, x, y, theta, length, angle):
     """Whether the footprint, grown by ``margin``, sweeps only open space along an arc.
 
     Conservative advancement: no point of the footprint moves further than |length| + R |angle|,
     so a pose that has clearance to spare vouches for the stretch after it. A footprint that is
     nearer than the margin to begin with (``allowed`` < margin) has to leave: it gains clearance.
     """
-    sweep = abs(length) + circumscribed * abs(angle)
-    smallest = 0.25 * resolution
+    sweep = abs(length) + body.circumscribed * abs(angle)
+    smallest = 0.25 * around.resolution
+    enough = margin + 4.0 * around.resolution
     share = 0.0
     while True:
         px, py, ptheta = arc(x, y, theta, share * length, share * angle)
         need = min(margin, allowed + LEAVING * share * abs(length))
-        spare = (
-            footprint_clearance(
-                field,
-                x0,
-                y0,
-                resolution,
-                vertices,
-                inscribed,
-                circumscribed,
-                margin + 4.0 * resolution,
-                px,
-                py,
-                ptheta,
-            )
-            - need
-        )
+        spare = footprint_clearance(around, body, enough, px, py, ptheta) - need
         if spare < -1e-6:
             return False
         if share >= 1.0:
@@ -84,8 +57,9 @@ def arc_is_clear(
 
 
 @njit(cache=True)
-def position_on_stop(x, y, theta, v0, omega0, v, omega, ramp, stop, t):
+def position_on_stop(state, v, omega, ramp, stop, t):
     """(x, y) at ``t`` seconds: the speeds change to (v, omega) over ``ramp``, then to 0 over ``stop``."""
+    x, y, theta, v0, omega0 = state
     if t <= ramp:
         share = t / ramp if ramp > 0.0 else 1.0
         length = t * (v0 + 0.5 * share * (v - v0))
@@ -100,161 +74,82 @@ def position_on_stop(x, y, theta, v0, omega0, v, omega, ramp, stop, t):
 
 
 @njit(cache=True)
-def movers_stay_clear(
-    movers, spread, radius, x, y, theta, v0, omega0, v, omega, ramp, stop, until, ahead
-):
-    """Whether no mover comes into contact within ``until`` seconds of a motion.
+def first_touch(movers, spread, radius, state, v, omega, ramp, stop, until, ahead):
+    """Seconds until a mover may come into contact with a motion, inf if none does before ``until``.
 
-    ``movers`` (m, 6) are x, y, vx, vy, radius, top speed as of now; the robot starts ``ahead``
-    seconds from now, changes to (v, omega) over ``ramp`` seconds and comes to rest in ``stop``
-    more. A mover may keep its velocity, stand or turn back, each with ``spread`` (m/s) more every
-    second while the robot moves. One that is too near already may not be approached further.
+    ``movers`` (m, 6) are x, y, vx, vy, radius, top speed as of now; the robot starts at ``state``
+    (x, y, theta, v, omega) ``ahead`` seconds from now, changes to (v, omega) over ``ramp`` seconds
+    and comes to rest in ``stop`` more. A mover may keep its velocity, stand or turn back, each with
+    ``spread`` (m/s) more every second while the robot moves; one that is nearer than ``radius``
+    and its own already may not come nearer.
     """
+    x, y = state[0], state[1]
     moves = min(ramp + stop, until)
-    n = max(2, int(math.ceil(until / 0.15)))
-    for m in range(len(movers)):
-        gap_now = math.hypot(movers[m, 0] - x, movers[m, 1] - y)
-        need = radius + movers[m, 4]
-        speed = math.hypot(movers[m, 2], movers[m, 3])
-        top = max(speed, movers[m, 5])
-        if gap_now > need + top * (until + ahead) + (spread + max(abs(v), abs(v0))) * (
-            moves + ahead
-        ):
-            continue
-        for way in WAYS:
-            scale = way * top / speed if way != 0.0 and speed > 1e-3 else 0.0
-            last = gap_now
-            for k in range(n + 1):
-                t = until * k / n
-                px, py = position_on_stop(x, y, theta, v0, omega0, v, omega, ramp, stop, t)
-                after = ahead + t
-                gap = math.hypot(
-                    movers[m, 0] + scale * movers[m, 2] * after - px,
-                    movers[m, 1] + scale * movers[m, 3] * after - py,
-                )
-                grown = need + spread * min(after, moves)
-                if gap < grown and gap < last - 1e-4:
-                    return False
-                last = min(last, gap)
-    return True
+    n = max(2, int(math.ceil(until / TICK)))
+    for k in range(n + 1):
+        t = until * k / n
+        px, py = position_on_stop(state, v, omega, ramp, stop, t)
+        after = ahead + t
+        for m in range(len(movers)):
+            mx, my, vx, vy, size, top = movers[m]
+            need = radius + size
+            now = math.hypot(mx - x, my - y)
+            grown = need + spread * min(after, moves) if now >= need else now - 1e-4
+            speed = math.sqrt(vx * vx + vy * vy)
+            faster = max(top, speed) / speed if speed > 1e-3 else 0.0
+            for way in WAYS:
+                dx = mx + way * faster * vx * after - px
+                dy = my + way * faster * vy * after - py
+                if dx * dx + dy * dy < grown * grown:
+                    return t
+    return np.inf
 
 
 @njit(cache=True)
-def certify(
-    field,
-    x0,
-    y0,
-    resolution,
-    vertices,
-    inscribed,
-    circumscribed,
-    margin,
-    allowed,
-    movers,
-    spread,
-    linger,
-    mover_margin,
-    ahead,
-    x,
-    y,
-    theta,
-    v0,
-    omega0,
-    v,
-    omega,
-    limits,
-    period,
-):
-    """Why (x, y, theta) with speeds (v0, omega0) may not be commanded (v, omega), or ADMISSIBLE.
+def certify(around, body, margins, allowed, ahead, state, v, omega, limits, period):
+    """Why a ``state`` (x, y, theta, v, omega) may not be commanded (v, omega), or ADMISSIBLE.
 
     Over one period the speeds change, each at its own limit; then both ramp to zero in proportion,
-    along one arc. ``allowed`` is the clearance at the start. RUN_OVER: the robot could come to rest
-    in time, and a mover would arrive there within ``linger`` seconds.
+    along one arc. ``allowed`` (m) is the clearance at the start, which is ``ahead`` seconds from
+    now. RUN_OVER: the robot could come to rest in time, and a mover would arrive there within the
+    margins' ``linger`` seconds.
     """
     _, _, a_v, a_w, b_v, b_w, _ = limits
     parts = 2
-    px, py, ptheta = x, y, theta
-    now_v, now_w = v0, omega0
+    px, py, ptheta, now_v, now_w = state
     for _ in range(parts):
         next_v = slew(now_v, v, a_v, b_v, period / parts)
         next_w = slew(now_w, omega, a_w, b_w, period / parts)
         length = 0.5 * (now_v + next_v) * period / parts
         angle = 0.5 * (now_w + next_w) * period / parts
-        if not arc_is_clear(
-            field,
-            x0,
-            y0,
-            resolution,
-            vertices,
-            inscribed,
-            circumscribed,
-            margin,
-            px,
-            py,
-            ptheta,
-            length,
-            angle,
-            allowed,
-        ):
+        if not arc_is_clear(around, body, margins.standing, allowed, px, py, ptheta, length, angle):
             return NO_STOP
         px, py, ptheta = arc(px, py, ptheta, length, angle)
         now_v, now_w = next_v, next_w
     stop = max(abs(now_v) / b_v, abs(now_w) / b_w)
+    length, angle = 0.5 * stop * now_v, 0.5 * stop * now_w
     if stop > 0.0 and not arc_is_clear(
-        field,
-        x0,
-        y0,
-        resolution,
-        vertices,
-        inscribed,
-        circumscribed,
-        margin,
-        px,
-        py,
-        ptheta,
-        0.5 * stop * now_v,
-        0.5 * stop * now_w,
-        allowed,
+        around, body, margins.standing, allowed, px, py, ptheta, length, angle
     ):
         return NO_STOP
-    if len(movers) == 0:
+    if len(around.movers) == 0:
         return ADMISSIBLE
-    radius = circumscribed + mover_margin
-    if not movers_stay_clear(
-        movers,
-        spread,
-        radius,
-        x,
-        y,
-        theta,
-        v0,
-        omega0,
+    moves = period + stop
+    touch = first_touch(
+        around.movers,
+        margins.spread,
+        body.circumscribed + margins.movers,
+        state,
         now_v,
         now_w,
         period,
         stop,
-        period + stop,
+        moves + margins.linger,
         ahead,
-    ):
+    )
+    if touch <= moves + 1e-9:
         return MOVER
-    if not movers_stay_clear(
-        movers,
-        spread,
-        radius,
-        x,
-        y,
-        theta,
-        v0,
-        omega0,
-        now_v,
-        now_w,
-        period,
-        stop,
-        period + stop + linger,
-        ahead,
-    ):
-        return RUN_OVER
-    return ADMISSIBLE
+    return RUN_OVER if touch < np.inf else ADMISSIBLE
 
 
 @njit(cache=True)

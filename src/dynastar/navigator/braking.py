@@ -1,9 +1,15 @@
-"""The stop that is carried on when nothing better is admissible."""
+"""The commands given, and the stop that is carried on when nothing better is admissible."""
 
 import math
 
-from dynastar.geometry import Twist
+import numpy as np
+
+from dynastar.dwa.stop_kernels import coast
+from dynastar.geometry import Pose2D, Twist
+from dynastar.navigator.status import RobotState
 from dynastar.robot import Limits, slew, stopping_time
+
+REST = Twist(0.0, 0.0)
 
 
 class StopProfile:
@@ -45,3 +51,53 @@ def _lead(current: float, mean: float, brake: float, period: float) -> float:
     if drop > abs(current) - 1e-9:
         return 0.0
     return slew(current, current - math.copysign(drop, current), brake, brake, period)
+
+
+class Commands:
+    """What was sent: where that takes the robot until a new command acts, and the stop behind it."""
+
+    def __init__(self, limits: Limits, period: float, latency: float) -> None:
+        self.limits, self.period, self.latency = limits, period, latency
+        self._sent: list[tuple[float, Twist]] = []
+        self._stop = StopProfile(REST, limits)
+
+    def when_one_acts(self, state: RobotState) -> tuple[Pose2D, Twist]:
+        """Pose and twist at the time from which a command given now acts."""
+        if self.latency <= 0.0 or not self._sent:
+            return state.pose, state.twist
+        ends = [stamp + self.latency for stamp, _ in self._sent[1:]] + [state.stamp + self.latency]
+        commands, durations = [], []
+        for (stamp, twist), end in zip(self._sent, ends, strict=True):
+            span = end - max(stamp + self.latency, state.stamp)
+            if span > 1e-9:
+                commands.append(twist)
+                durations.append(span)
+        if not durations:
+            return state.pose, state.twist
+        x, y, theta, v, omega = coast(
+            *state.pose, *state.twist, np.array(commands), np.array(durations), self.limits
+        )
+        return Pose2D(x, y, theta), Twist(v, omega)
+
+    def send(self, state: RobotState, command: Twist) -> Twist:
+        """Notes a command that has a certified stop; that stop is carried on if need be."""
+        self._stop = StopProfile(command, self.limits)
+        self._note(state.stamp, command)
+        return command
+
+    def brake(self, state: RobotState) -> Twist:
+        """Carries the last certified stop on."""
+        finite = all(math.isfinite(number) for number in (state.stamp, *state.pose, *state.twist))
+        if finite:
+            twist = self.when_one_acts(state)[1]
+        else:
+            twist = self._sent[-1][1] if self._sent else REST
+        command = self._stop.next(twist, self.period)
+        if finite:
+            self._note(state.stamp, command)
+        return command
+
+    def _note(self, now: float, command: Twist) -> None:
+        self._sent.append((now, command))
+        while len(self._sent) > 1 and self._sent[1][0] + self.latency <= now:
+            self._sent.pop(0)

@@ -14,13 +14,17 @@ from dynastar.obstacles.layer import SEEN_FREE, SEEN_OCCUPIED
 from dynastar.planning import GridPlanner, Plan
 
 Mask = npt.NDArray[np.bool_]
+Cells = npt.NDArray[np.int64]
+Window = tuple[Cells, Cells, Cells]
+
+LONGER = 1.03  # times the tightest plan's length, a plan with room to spare is too long
 
 
 class Chart:
     """Plans on the map and the obstacles seen, with room to spare where there is room.
 
-    One planner keeps ``comfort`` more clearance than the footprint needs; where it finds no way the
-    other, which keeps what a certified stop needs and no more, is asked.
+    One planner keeps ``comfort`` more clearance than the footprint needs; where it finds no way, or
+    only a longer one, the plan is the other's, which keeps what a certified stop needs and no more.
     """
 
     def __init__(
@@ -37,7 +41,8 @@ class Chart:
         self.planners = [GridPlanner(self.grid, r, config.unknown, config.planner) for r in radii]
         self.seen = np.zeros(self.prior.shape, np.bool_)
         self.cleared = np.zeros(self.prior.shape, np.bool_)
-        near = inflate(self.grid.occupied, 1.0, outside_blocked=False)
+        self._under: tuple[tuple[float, float], Window] | None = None
+        near = inflate(self.grid.occupied, 1.0, outside_blocked=True)
         self.known = Known(near, self.frame)
 
     @property
@@ -47,19 +52,15 @@ class Chart:
 
     def take_in(self, layer: ObstacleLayer) -> bool:
         """Marks what the layer shows occupied and clears what it shows free; whether that changed."""
-        a = layer.config.resolution
-        x0, y0 = layer.origin
-        low, high = self._window(layer)
+        low, high, below = self._window(layer)
         if (high <= low).any():
             return False
         part = np.s_[low[0] : high[0], low[1] : high[1]]
-        occupied, free = np.zeros((2, *(high - low)), np.bool_)
-        for state, target in ((SEEN_OCCUPIED, occupied), (SEEN_FREE, free)):
-            rows, columns = np.nonzero(layer.states == state)
-            points = np.column_stack([(columns + 0.5) * a + x0, (rows + 0.5) * a + y0])
-            cells = np.floor(self.frame.points_to_grid(points)).astype(np.int64) - low
-            cells = cells[((cells >= 0) & (cells < high - low)).all(axis=1)]
-            target[cells[:, 0], cells[:, 1]] = True
+        shape = (int(high[0] - low[0]), int(high[1] - low[1]))
+        occupied, free = np.zeros((2, shape[0] * shape[1] + 1), np.bool_)
+        occupied[below[layer.states == SEEN_OCCUPIED]] = True
+        free[below[layer.states == SEEN_FREE]] = True
+        occupied, free = occupied[:-1].reshape(shape), free[:-1].reshape(shape)
         occupied &= ~self.known.mask[part]
         seen = occupied | (self.seen[part] & ~free)
         cleared = (self.cleared[part] | free) & self._unknown[part]
@@ -78,20 +79,23 @@ class Chart:
             self._mark(changed, np.zeros(2, np.int64))
 
     def plan(self, start: tuple[float, float], goal: tuple[float, float], explored: bool) -> Plan:
-        """The roomiest plan there is; raises what the tightest planner raises if there is none.
+        """The roomiest plan that is as short as any; raises what the tightest planner raises.
 
         A start too close to something for a roomy planner has to be led out of that by a way that
         the tightest can follow.
         """
+        tight = self.planners[-1].plan(start, goal, explored=explored)
         for planner in self.planners[:-1]:
             try:
                 plan = planner.plan(start, goal, explored=explored)
             except (NoPath, GoalOccupied, StartOccupied):
                 continue
+            if plan.path.length > LONGER * tight.path.length:
+                continue
             lead = plan.path.resampled(0.0, plan.clear_from, 1e9)
             if plan.clear_from == 0.0 or self.blocked_at(lead) is None:
                 return plan
-        return self.planners[-1].plan(start, goal, explored=explored)
+        return tight
 
     def blocked_at(self, points: npt.NDArray[np.float64]) -> float | None:
         """Metres along a polyline (n, 2) to where even the tightest planner could not go."""
@@ -106,14 +110,27 @@ class Chart:
             limits[inside] = self.grid.speed_limit[cells[inside, 0], cells[inside, 1]]
         return limits
 
-    def _window(self, layer: ObstacleLayer) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-        side = len(layer.states) * layer.config.resolution
+    def _window(self, layer: ObstacleLayer) -> Window:
+        """The chart's cells [low, high) under a layer, and under each of its cells the chart's.
+
+        The latter as an index into the flattened window, its size for what lies off the chart.
+        """
+        if self._under is not None and self._under[0] == layer.origin:
+            return self._under[1]
+        n, a = len(layer.states), layer.config.resolution
         x0, y0 = layer.origin
-        corners = [(x0, y0), (x0 + side, y0), (x0, y0 + side), (x0 + side, y0 + side)]
-        cells = self.frame.points_to_grid(corners)
-        low = np.maximum(np.floor(cells.min(axis=0)).astype(np.int64), 0)
-        high = np.minimum(np.ceil(cells.max(axis=0)).astype(np.int64), self.prior.shape)
-        return low, high
+        rows, columns = np.mgrid[:n, :n]
+        points = np.column_stack(
+            [((columns + 0.5) * a + x0).ravel(), ((rows + 0.5) * a + y0).ravel()]
+        )
+        cells = np.floor(self.frame.points_to_grid(points)).astype(np.int64)
+        low = np.maximum(cells.min(axis=0), 0)
+        high = np.minimum(cells.max(axis=0) + 1, self.prior.shape)
+        size = np.maximum(high - low, 0)
+        inside = ((cells >= low) & (cells < high)).all(axis=1)
+        below = np.where(inside, (cells - low) @ np.array([size[1], 1]), size[0] * size[1])
+        self._under = layer.origin, (low, high, below.reshape(n, n))
+        return self._under[1]
 
     def _mark(self, changed: Mask, low: npt.NDArray[np.int64]) -> None:
         rows, columns = np.nonzero(changed)

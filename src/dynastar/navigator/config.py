@@ -21,13 +21,10 @@ class NavigatorConfig(NamedTuple):
     mover_margin: Annotated[float, Field("gap kept from a mover", "m", 0.0, 2.0)] = 0.15
     linger: Annotated[
         float, Field("no mover should arrive where it rests for so long", "s", 0.0, 60.0)
-    ] = 4.0
+    ] = 8.0
     mover_speed: Annotated[
         float, Field("so fast a mover may come into view head-on", "m/s", 0.0, 20.0)
     ] = 0.8
-    corner_speed: Annotated[
-        float, Field("so fast a mover may come round a blind corner", "m/s", 0.0, 20.0)
-    ] = 0.05
     scan_age: Annotated[float, Field("older data are no data", "s", 0.05, 5.0)] = 0.3
     unknown: Annotated[Literal["free", "blocked"], Field("plan through unknown space?")] = "blocked"
     goal_tolerance: Annotated[float, Field("so near is there", "m", 0.01, 5.0)] = 0.25
@@ -41,7 +38,7 @@ class NavigatorConfig(NamedTuple):
     stuck_time: Annotated[float, Field("no progress for so long is stuck", "s", 0.5, 120.0)] = 6.0
     patience: Annotated[float, Field("wait for a mover so long", "s", 0.0, 600.0)] = 15.0
     attempts: Annotated[int, Field("rounds of recovery before giving up", "", 1, 100)] = 4
-    planner: PlannerConfig = PlannerConfig(heuristic=HeuristicConfig(parent=False))
+    planner: PlannerConfig = PlannerConfig(heuristic=HeuristicConfig(parent=False, q="ratio"))
     dwa: DwaConfig = DwaConfig()
     layer: LayerConfig = LayerConfig()
     tracker: TrackerConfig = TrackerConfig()

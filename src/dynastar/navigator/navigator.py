@@ -8,11 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from dynastar.dwa import Choice, DynamicWindow, Margins, Surroundings, Wish
-from dynastar.dwa.stop_kernels import coast
 from dynastar.errors import GoalOccupied, NoPath, PlanningError
 from dynastar.geometry import Goal, Pose2D, Twist, wrap_angle
 from dynastar.grid import OccupancyGrid
-from dynastar.navigator.braking import StopProfile
+from dynastar.navigator.braking import REST, Commands
 from dynastar.navigator.chart import Chart
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.profile import SpeedProfile, bend_speed, points, wary_speed
@@ -28,7 +27,6 @@ from dynastar.scan import LaserScan
 
 log = logging.getLogger("dynastar")
 
-REST = Twist(0.0, 0.0)
 BEHIND = 2.8  # rad off the heading from which a target is as good as behind
 OUT_OF_SIGHT = "the path is out of sight"
 PATH_SPACING = 0.1  # m between the points of the path that simi compares with
@@ -63,9 +61,10 @@ class Navigator:
         self._goals: list[Goal] = []
         self._path: Path | None = None
         self._s = 0.0
-        self._sent: list[tuple[float, Twist]] = []
-        self._stop = StopProfile(REST, robot.limits)
+        self._commands = Commands(robot.limits, config.period, config.latency)
         self._waiting_since: float | None = None
+        # So fast that it can stop for what comes into view at the edge of sight.
+        self._wary = wary_speed(robot.limits, config.mover_speed, robot.lidar.range_max)
         self.set_map(grid)
 
     def set_map(self, grid: OccupancyGrid) -> None:
@@ -104,7 +103,7 @@ class Navigator:
             fault = self.senses.take_in(scans, state.stamp, self.chart.known)
         if fault is not None:
             self._say("sensor_lost", fault, choice=None)
-            return self._brake(state)
+            return self._commands.brake(state)
         if self.status.state == "sensor_lost":
             self._say("following", "data are back")
             self.progress.restart(state.stamp)
@@ -114,16 +113,16 @@ class Navigator:
             self.status, tracks=self.senses.tracker.movers, goals_left=len(self._goals)
         )
         if not self._goals or self.status.state == "blocked":
-            return self._brake(state)
+            return self._commands.brake(state)
         if self._arrived(state):
             self._goals.pop(0)
             self._path = None
             self.recovery.reset()
             if not self._goals:
                 self._say("arrived", "the goal is reached", goals_left=0)
-                return self._brake(state)
+                return self._commands.brake(state)
         if not self._plan(state, changed):
-            return self._brake(state)
+            return self._commands.brake(state)
         return self._drive(state, around)
 
     # -- planning ---------------------------------------------------------------------------------
@@ -193,7 +192,7 @@ class Navigator:
     def _drive(self, state: RobotState, around: Surroundings) -> Twist:
         assert self._path is not None
         config, now = self.config, state.stamp
-        pose, twist = self._when_it_acts(state)
+        pose, twist = self._commands.when_one_acts(state)
         left = self._path.length - self._s
         goal = self._goals[0]
         tight = self.robot.footprint.inscribed + self.margins.standing
@@ -233,7 +232,7 @@ class Navigator:
             min(
                 self._profile.at(self._s),
                 self._profile.at(self._s + state.twist.v * (2.0 * config.period + config.latency)),
-                self._wary_speed(state.pose),
+                self._wary,
                 float(bend_speed(abs(bearing), self.robot.limits)),
             ),
         )
@@ -245,7 +244,7 @@ class Navigator:
         self._judge(state, choice, seen, aligning, target)
         if self.recovery.active(now):
             return self._recover(state, pose, twist, around, wish)
-        return self._carry_out(state, choice, pose, twist, around)
+        return self._carry_out(state, choice, pose, twist, around, wish)
 
     def _judge(
         self,
@@ -315,28 +314,28 @@ class Navigator:
             command = choice.command
             self._say("recovering", "turn towards the path", choice=choice, target=wish.target)
         if command is None:
-            return self._brake(state)
-        return self._send(state, command)
+            return self._commands.brake(state)
+        return self._commands.send(state, command)
 
     def _carry_out(
-        self, state: RobotState, choice: Choice, pose: Pose2D, twist: Twist, around: Surroundings
+        self,
+        state: RobotState,
+        choice: Choice,
+        pose: Pose2D,
+        twist: Twist,
+        around: Surroundings,
+        wish: Wish,
     ) -> Twist:
         """Drives as chosen, out of the way of movers if standing is no good, or brakes."""
         command = choice.command
         if len(around.movers) and (command is None or command == REST):
-            out = self.window.evade(pose, twist, around, self._margins(state), self.config.latency)
+            out = self.window.evade(
+                pose, twist, around, wish.path, self._margins(state), self.config.latency
+            )
             command = out if out is not None else command
-        return self._brake(state) if command is None else self._send(state, command)
-
-    def _wary_speed(self, pose: Pose2D) -> float:
-        """The speed that can be braked for whatever comes out of sight's edge or from a blind corner."""
-        config, robot = self.config, self.robot
-        cap = wary_speed(robot.limits, config.mover_speed, robot.lidar.range_max)
-        nearest = self.senses.blind_corner(pose, math.radians(100.0))
-        if math.isfinite(nearest):
-            room = max(nearest - robot.footprint.circumscribed, 0.0)
-            cap = min(cap, wary_speed(robot.limits, config.corner_speed, room))
-        return max(cap, min(0.15, robot.limits.v_max))
+        return (
+            self._commands.brake(state) if command is None else self._commands.send(state, command)
+        )
 
     def _margins(self, state: RobotState) -> Margins:
         """The margins, with what a heading error adds over the length of a stop."""
@@ -347,7 +346,7 @@ class Navigator:
             standing=self.margins.standing + self.config.heading_error * (stop + ahead)
         )
 
-    # -- the end, and the stop --------------------------------------------------------------------
+    # -- the end ----------------------------------------------------------------------------------
 
     def _arrived(self, state: RobotState) -> bool:
         goal = self._goals[0]
@@ -356,47 +355,6 @@ class Navigator:
         if goal.heading is None:
             return True
         return abs(wrap_angle(goal.heading - state.pose.theta)) <= self.config.heading_tolerance
-
-    def _when_it_acts(self, state: RobotState) -> tuple[Pose2D, Twist]:
-        """Pose and twist at the time from which a command given now acts."""
-        latency = self.config.latency
-        if latency <= 0.0 or not self._sent:
-            return state.pose, state.twist
-        ends = [stamp + latency for stamp, _ in self._sent[1:]] + [state.stamp + latency]
-        commands, durations = [], []
-        for (stamp, twist), end in zip(self._sent, ends, strict=True):
-            span = end - max(stamp + latency, state.stamp)
-            if span > 1e-9:
-                commands.append(twist)
-                durations.append(span)
-        if not durations:
-            return state.pose, state.twist
-        x, y, theta, v, omega = coast(
-            *state.pose, *state.twist, np.array(commands), np.array(durations), self.robot.limits
-        )
-        return Pose2D(x, y, theta), Twist(v, omega)
-
-    def _send(self, state: RobotState, command: Twist) -> Twist:
-        """Notes a command that has a certified stop; that stop is carried on if need be."""
-        self._stop = StopProfile(command, self.robot.limits)
-        self._note(state, command)
-        return command
-
-    def _brake(self, state: RobotState) -> Twist:
-        """Carries the last certified stop on."""
-        finite = all(math.isfinite(number) for number in (state.stamp, *state.pose, *state.twist))
-        twist = (
-            self._when_it_acts(state)[1] if finite else self._sent[-1][1] if self._sent else REST
-        )
-        command = self._stop.next(twist, self.config.period)
-        if finite:
-            self._note(state, command)
-        return command
-
-    def _note(self, state: RobotState, command: Twist) -> None:
-        self._sent.append((state.stamp, command))
-        while len(self._sent) > 1 and self._sent[1][0] + self.config.latency <= state.stamp:
-            self._sent.pop(0)
 
     def _say(self, state: str, reason: str, **more: object) -> None:
         self.status = replace(self.status, state=state, reason=reason, **more)  # type: ignore[arg-type]

@@ -12,7 +12,7 @@ SPACING = 0.1  # m between the points of the profile
 BEND = 0.5  # m either side of a point over which the path's change of heading counts as one bend
 SWING = 0.15  # m that the robot may swing wide of the path or cut it in a bend
 GENTLE = 0.7  # share of the braking that slowing down for what is ahead may use
-SLOWEST = 0.1  # m/s, so that nothing ahead stops the robot short of it
+SLOWEST = 0.1  # m/s, so that nothing ahead but a lower limit stops the robot short of it
 
 Floats = npt.NDArray[np.float64]
 
@@ -37,7 +37,8 @@ class SpeedProfile:
         # v^2 + 2 b s may not exceed that of any later point.
         energy = speed**2 + twice_brake * self._arc
         ahead = np.minimum.accumulate(energy[::-1])[::-1] - twice_brake * self._arc
-        self._speed = np.maximum(np.sqrt(np.maximum(ahead, 0.0)), min(SLOWEST, limits.v_max))
+        slowest = np.minimum(speed_limit, min(SLOWEST, limits.v_max))
+        self._speed = np.maximum(np.sqrt(np.maximum(ahead, 0.0)), slowest)
 
     def at(self, s: float) -> float:
         """The speed (m/s) at ``s`` metres along the path."""

@@ -12,7 +12,6 @@ from dynastar.grid import OccupancyGrid
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.status import RobotState
 from dynastar.obstacles import Known, MovingObstacle, ObstacleLayer, Tracker
-from dynastar.obstacles.corner_kernels import blind_corners, nearest_corner
 from dynastar.obstacles.layer_kernels import scan_points
 from dynastar.robot import Robot
 from dynastar.scan import LaserScan
@@ -30,7 +29,6 @@ class Senses:
         self._beams: dict[Pose2D, int] = {}
         self._seen: dict[Pose2D, float] = {}  # the newest stamp of each sensor
         self._fresh = True
-        self._corners = np.empty((0, 2))
         self._jumped_to: Pose2D | None = None
 
     @property
@@ -115,26 +113,11 @@ class Senses:
             self.layer.field, *self.layer.origin, self.layer.config.resolution, array
         )
 
-    def blind_corner(self, pose: Pose2D, within: float) -> float:
-        """Metres to the nearest corner ahead that something could come round, inf if there is none.
-
-        Ahead is up to ``within`` radians off the heading.
-        """
-        return float(nearest_corner(self._corners, *pose, within))
-
     def _see(self, scan: LaserScan, known: Known) -> None:
         self._beams.setdefault(scan.mount, len(scan.ranges))
         self._seen[scan.mount] = scan.stamp
         sensor = compose(self._pose_at(scan.stamp), scan.mount)
         points, beams = scan_points(
-            scan.ranges,
-            scan.range_min,
-            scan.range_max,
-            scan.angle_min,
-            scan.angle_increment,
-            *sensor,
-        )
-        self._corners = blind_corners(
             scan.ranges,
             scan.range_min,
             scan.range_max,

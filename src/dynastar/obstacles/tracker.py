@@ -21,6 +21,7 @@ class TrackerConfig(NamedTuple):
     widest: Annotated[float, Field("what is wider does not walk", "m", 0.1, 5.0)] = 1.3
     scans: Annotated[int, Field("scans that have to agree", "", 2, 100)] = 3
     slowest: Annotated[float, Field("what is slower stands", "m/s", 0.01, 2.0)] = 0.12
+    fastest: Annotated[float, Field("nothing is faster", "m/s", 0.1, 50.0)] = 3.0
     fresh_share: Annotated[
         float, Field("share of a mover's points in space seen free before", "", 0.0, 1.0)
     ] = 0.4
@@ -28,7 +29,7 @@ class TrackerConfig(NamedTuple):
         3.0
     )
     rest_time: Annotated[float, Field("slow for so long stands again", "s", 0.0, 60.0)] = 1.0
-    coast: Annotated[float, Field("a hidden mover is predicted for so long", "s", 0.0, 60.0)] = 1.5
+    coast: Annotated[float, Field("one out of sight counts for so long", "s", 0.0, 60.0)] = 6.0
     gate: Annotated[float, Field("a track's next point lies within", "m", 0.01, 5.0)] = 0.35
     acceleration: Annotated[float, Field("noise of a mover's speed", "m/s2", 0.01, 20.0)] = 1.0
     error: Annotated[float, Field("noise of a mover's centre", "m", 0.001, 1.0)] = 0.04
@@ -109,8 +110,17 @@ class Tracker:
         kernels.predict(self._tracks, dt, config.acceleration)
         taken = kernels.associate(self._tracks, found, config.gate)
         kernels.correct(self._tracks, found, config.error, now)
+        kernels.lurk(
+            self._tracks, dt, layer.free_at, *layer.origin, layer.config.resolution, now - 0.35
+        )
         confirmed = kernels.judge(
-            self._tracks, now, config.scans, config.slowest, config.fresh_share, config.rest_time
+            self._tracks,
+            now,
+            config.scans,
+            config.slowest,
+            config.fastest,
+            config.fresh_share,
+            config.rest_time,
         )
         for row in self._tracks[confirmed]:
             self._erase(row, layer)
@@ -123,8 +133,15 @@ class Tracker:
 
     @property
     def movers(self) -> tuple[MovingObstacle, ...]:
-        """The confirmed movers as of the last scan."""
+        """The confirmed movers as of the last scan.
+
+        One that is out of sight is here twice: where it may have got to, and where it was lost,
+        for it may come back.
+        """
         rows = self._tracks[self._tracks[:, kernels.T_MOVING] > 0]
+        lurking = rows[self._stamp - rows[:, kernels.T_SEEN] > kernels.LOST]
+        lurking[:, [kernels.T_X, kernels.T_Y]] = lurking[:, [kernels.T_X0, kernels.T_Y0]]
+        rows = np.vstack([rows, lurking])
         order = [kernels.T_X, kernels.T_Y, kernels.T_VX, kernels.T_VY, kernels.T_RADIUS]
         order.append(kernels.T_TOP)
         return tuple(MovingObstacle(*map(float, row[order])) for row in rows)

@@ -5,12 +5,17 @@ import math
 import numpy as np
 from numba import njit
 
-# Columns of a cluster: centre, radius, share of points in space seen free before, first, last point.
-C_X, C_Y, C_RADIUS, C_FRESH, C_FIRST, C_LAST = range(6)
+# Columns of a cluster: centre, radius, share of points in space seen free before, first and last
+# point, and 1 if something nearer hides an end of it.
+C_X, C_Y, C_RADIUS, C_FRESH, C_FIRST, C_LAST, C_CUT = range(7)
 # Columns of a track. x and y share one covariance, for the filter treats them alike.
 T_X, T_Y, T_VX, T_VY, T_PP, T_PV, T_VV, T_RADIUS, T_HITS, T_SEEN, T_FRESH = range(11)
 T_X0, T_Y0, T_MOVING, T_SLOW_SINCE, T_CLUSTER, T_TOP = range(11, 17)
 COLUMNS = 17
+LOST = 0.5  # s after which a mover that is seen again has its velocity measured anew
+HIDING = 2.0  # m ahead of where it was last that a mover may be hidden
+BEHIND = 1.5  # cells behind a point to where its space has to have been seen free before
+HIDDEN = 4.0  # so much less sure is the centre of something partly hidden
 TOP_KEPT = 0.97  # of a mover's top speed from scan to scan
 DISC_DEPTH = 0.25 * math.pi  # mean depth of a disc's visible half, in radii
 
@@ -34,31 +39,38 @@ def clusters(
     known,
     known_frame,
 ):
-    """Groups neighbouring points into things that could move: (m, 6), see the columns above.
+    """Groups neighbouring points into things that could move: (m, 7), see the columns above.
 
-    A group breaks where neighbours lie further apart than ``gap`` plus twice the beams' spacing;
-    what is wider than ``widest`` or stands where the map shows something is left out.
+    A group breaks where neighbours lie further apart than ``gap`` plus twice the beams' spacing and
+    where what the map shows begins or ends; that is left out, and what is wider than ``widest``.
     ``known_frame`` is (resolution, x, y, yaw) of the map whose widened obstacles ``known`` marks.
     """
     n = len(points)
-    found = np.empty((n, 6))
+    found = np.empty((n, 7))
     m = 0
     if n == 0:
         return found[:0]
+    cos, sin = math.cos(known_frame[3]), math.sin(known_frame[3])
+    mapped = np.zeros(n, np.bool_)  # whether the map shows what point i lies on
+    for i in range(n):
+        dx, dy = points[i, 0] - known_frame[1], points[i, 1] - known_frame[2]
+        column = int(math.floor((cos * dx + sin * dy) / known_frame[0]))
+        row = int(math.floor((cos * dy - sin * dx) / known_frame[0]))
+        if 0 <= row < known.shape[0] and 0 <= column < known.shape[1]:
+            mapped[i] = known[row, column]
     breaks = np.zeros(n, np.bool_)  # a break before point i
     for i in range(n):
         j = i - 1 if i > 0 else n - 1
         dx, dy = points[i, 0] - points[j, 0], points[i, 1] - points[j, 1]
         r = math.hypot(points[i, 0] - sensor_x, points[i, 1] - sensor_y)
         skipped = (beams[i] - beams[j]) % n_beams
-        far = math.hypot(dx, dy) > gap + 2.0 * r * step
+        far = math.hypot(dx, dy) > gap + 2.0 * r * step or mapped[i] != mapped[j]
         breaks[i] = far or skipped > 3 or (i == 0 and not full_circle)
     first = 0
     while first < n and not breaks[first]:
         first += 1
     if first == n:
         return found[:0]  # one group all round: walls
-    cos, sin = math.cos(known_frame[3]), math.sin(known_frame[3])
     start = first
     while start < first + n:
         stop = start + 1
@@ -67,9 +79,9 @@ def clusters(
         count = stop - start
         a, b = start % n, (stop - 1) % n
         width = math.hypot(points[b, 0] - points[a, 0], points[b, 1] - points[a, 1])
-        if count >= 2 and width <= widest:
+        if count >= 2 and width <= widest and not mapped[a]:
             cx = cy = 0.0
-            fresh = on_map = 0
+            fresh = 0
             low_x = low_y = np.inf
             high_x = high_y = -np.inf
             for k in range(start, stop):
@@ -78,27 +90,18 @@ def clusters(
                 cy += py
                 low_x, high_x = min(low_x, px), max(high_x, px)
                 low_y, high_y = min(low_y, py), max(high_y, py)
-                row, column = (
-                    int(math.floor((py - y0) / resolution)),
-                    int(math.floor((px - x0) / resolution)),
-                )
+                # A surface that stands may lie in a cell that beams pass; behind it none does.
+                depth = BEHIND * resolution / max(math.hypot(px - sensor_x, py - sensor_y), 1e-9)
+                row = int(math.floor((py + depth * (py - sensor_y) - y0) / resolution))
+                column = int(math.floor((px + depth * (px - sensor_x) - x0) / resolution))
                 if (
                     0 <= row < free_at.shape[0]
                     and 0 <= column < free_at.shape[1]
                     and free_at[row, column] > since
                 ):
                     fresh += 1
-                dx, dy = px - known_frame[1], py - known_frame[2]
-                column = int(math.floor((cos * dx + sin * dy) / known_frame[0]))
-                row = int(math.floor((cos * dy - sin * dx) / known_frame[0]))
-                if (
-                    0 <= row < known.shape[0]
-                    and 0 <= column < known.shape[1]
-                    and known[row, column]
-                ):
-                    on_map += 1
             cx, cy = cx / count, cy / count
-            if 2 * on_map < count and math.hypot(high_x - low_x, high_y - low_y) <= widest:
+            if math.hypot(high_x - low_x, high_y - low_y) <= widest:
                 r = max(math.hypot(cx - sensor_x, cy - sensor_y), 1e-9)
                 radius = max(0.5 * (width + r * step), 0.05)
                 push = DISC_DEPTH * radius / r
@@ -108,6 +111,15 @@ def clusters(
                 found[m, C_FRESH] = fresh / count
                 found[m, C_FIRST] = start
                 found[m, C_LAST] = stop - 1
+                found[m, C_CUT] = 0.0
+                for end, beside in ((a, (start - 1) % n), (b, stop % n)):
+                    skipped = abs(beams[end] - beams[beside])
+                    beside_r = math.hypot(
+                        points[beside, 0] - sensor_x, points[beside, 1] - sensor_y
+                    )
+                    end_r = math.hypot(points[end, 0] - sensor_x, points[end, 1] - sensor_y)
+                    if min(skipped, n_beams - skipped) <= 3 and beside_r < end_r - gap:
+                        found[m, C_CUT] = 1.0
                 m += 1
         start = stop
     return found[:m]
@@ -154,14 +166,18 @@ def associate(tracks, found, gate):
 @njit(cache=True)
 def correct(tracks, found, error, now):
     """The Kalman update of every track with its cluster; ``error`` is a centre's deviation (m)."""
-    r = error * error
     for t in range(len(tracks)):
         row = tracks[t]
         if row[T_CLUSTER] < 0.0:
             continue
         c = found[int(row[T_CLUSTER])]
+        if now - row[T_SEEN] > LOST:  # where it is now says nothing of how fast it went
+            row[T_PP], row[T_PV], row[T_VV] = 1.0, 0.0, 0.25
+        r = (error * (HIDDEN if c[C_CUT] > 0.0 else 1.0)) ** 2
         s = row[T_PP] + r
         k_p, k_v = row[T_PP] / s, row[T_PV] / s
+        if c[C_CUT] > 0.0 and row[T_MOVING] > 0.0:  # what comes into view of it is no motion
+            k_v = 0.0
         ex, ey = c[C_X] - row[T_X], c[C_Y] - row[T_Y]
         row[T_X] += k_p * ex
         row[T_Y] += k_p * ey
@@ -177,7 +193,50 @@ def correct(tracks, found, error, now):
 
 
 @njit(cache=True)
-def judge(tracks, now, scans, slowest, fresh_share, rest_time):
+def hidden(x, y, free_at, x0, y0, resolution, since):
+    """Whether the cell at (x, y) was not seen free ``since``."""
+    r, c = int(math.floor((y - y0) / resolution)), int(math.floor((x - x0) / resolution))
+    inside = 0 <= r < free_at.shape[0] and 0 <= c < free_at.shape[1]
+    return not inside or free_at[r, c] < since
+
+
+@njit(cache=True)
+def lurk(tracks, dt, free_at, x0, y0, resolution, since):
+    """Keeps movers that are out of sight where they can be: not where space was seen free ``since``.
+
+    One that would come into view stays behind the edge; where its hiding place has come into view,
+    it has gone on to the next along its way, up to ``HIDING`` metres, or is lost (T_SEEN -inf).
+    (T_X0, T_Y0) is the nearest to where it was seen last that is hidden: it may come back any time.
+    """
+    where = (free_at, x0, y0, resolution, since)
+    for t in range(len(tracks)):
+        row = tracks[t]
+        if row[T_MOVING] == 0.0:
+            continue
+        if row[T_CLUSTER] >= 0.0:
+            row[T_X0], row[T_Y0] = row[T_X], row[T_Y]
+            continue
+        row[T_PP] = min(row[T_PP], 0.09)
+        row[T_VV] = min(row[T_VV], 0.25)
+        speed = max(math.hypot(row[T_VX], row[T_VY]), 1e-6)
+        ux, uy = row[T_VX] / speed, row[T_VY] / speed
+        if not hidden(row[T_X], row[T_Y], *where):
+            row[T_X] -= row[T_VX] * dt
+            row[T_Y] -= row[T_VY] * dt
+        for column in (T_X, T_X0):
+            gone = 0.0
+            while gone <= HIDING and not hidden(
+                row[column] + gone * ux, row[column + 1] + gone * uy, *where
+            ):
+                gone += resolution
+            if gone > HIDING:
+                row[T_SEEN] = -np.inf
+            row[column] += gone * ux
+            row[column + 1] += gone * uy
+
+
+@njit(cache=True)
+def judge(tracks, now, scans, slowest, fastest, fresh_share, rest_time):
     """Decides which tracks move; returns those confirmed just now (bool per track).
 
     A track moves once ``scans`` scans agree, it is significantly faster than ``slowest``, has left
@@ -188,6 +247,10 @@ def judge(tracks, now, scans, slowest, fresh_share, rest_time):
     for t in range(len(tracks)):
         row = tracks[t]
         speed = math.hypot(row[T_VX], row[T_VY])
+        if speed > fastest:  # two things taken for one
+            row[T_MOVING], row[T_HITS], row[T_VX], row[T_VY] = 0.0, 1.0, 0.0, 0.0
+            row[T_X0], row[T_Y0], row[T_PV], row[T_VV] = row[T_X], row[T_Y], 0.0, 1.0
+            speed = 0.0
         row[T_TOP] = max(speed, TOP_KEPT * row[T_TOP]) if row[T_MOVING] > 0.0 else 0.0
         if row[T_MOVING] > 0.0:
             if speed > 0.5 * slowest:
@@ -212,7 +275,7 @@ def on_tracks(points, tracks, found, margin):
     n = len(points)
     for t in range(len(tracks)):
         row = tracks[t]
-        if row[T_MOVING] == 0.0:
+        if row[T_MOVING] == 0.0 or row[T_CLUSTER] < 0.0:
             continue
         if row[T_CLUSTER] >= 0.0:
             c = found[int(row[T_CLUSTER])]

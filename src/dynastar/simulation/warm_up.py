@@ -5,8 +5,11 @@ from functools import cache
 
 import numpy as np
 
-from dynastar.geometry import Goal
+from dynastar.dwa import DwaConfig, DynamicWindow, Margins, Surroundings
+from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.grid import OccupancyGrid
+from dynastar.obstacles import ObstacleLayer
+from dynastar.path import Path
 from dynastar.robot import ROBOTS
 from dynastar.simulation.scenario import Mover, Scenario
 
@@ -36,7 +39,21 @@ def warm_up() -> None:
         (Goal(9.0, 3.0),),
         obstacles=(box,),
         movers=(walker,),
+        latency=0.1,
         time_limit=5.0,
     )
     drive(scenario)
     drive(replace(scenario, robot=ROBOTS["jackal"]))
+    _evade(scenario)
+
+
+def _evade(scenario: Scenario) -> None:
+    """The way out of a walker's way, which few missions need."""
+    pose, path = Pose2D(1.0, 1.0, 0.0), Path(np.array([(1.0, 1.0), (3.0, 1.0)]))
+    walker = np.array([[2.0, 2.0, -0.5, -0.5, 0.3, 0.7]])
+    window = DynamicWindow(scenario.robot, DwaConfig(), 0.1)
+    layer = ObstacleLayer()
+    around = Surroundings(layer.field, *layer.origin, layer.config.resolution, walker)
+    window.evade(
+        pose, Twist(0.0, 0.0), around, path.resampled(0.0, 2.0, 0.1), Margins(0.1, 0.1, 0.1)
+    )
