@@ -3,10 +3,14 @@ import math
 import numpy as np
 import pytest
 
+from dynastar.clearance import inflate
 from dynastar.geometry import Pose2D
-from dynastar.obstacles import ObstacleLayer, Tracker
+from dynastar.grid import GridFrame
+from dynastar.obstacles import Known, ObstacleLayer, Tracker
+from dynastar.obstacles import tracker_kernels as kernels
 from dynastar.obstacles.layer import SEEN_OCCUPIED
 from dynastar.obstacles.layer_kernels import scan_points
+from dynastar.obstacles.tracker import NOTHING_KNOWN
 from dynastar.scan import LaserScan
 
 N, FAR = 720, 8.0
@@ -139,48 +143,84 @@ def test_a_hiding_place_that_came_into_view_empty_hides_nobody():
     assert tracker.movers == ()
 
 
+def track(vx, moving=1.0):
+    """One track at (2, 0) with that velocity."""
+    row = np.zeros((1, kernels.COLUMNS))
+    row[0, [kernels.T_X, kernels.T_VX, kernels.T_MOVING, kernels.T_RADIUS]] = 2.0, vx, moving, 0.3
+    row[0, [kernels.T_PP, kernels.T_PV, kernels.T_VV]] = 0.01, 0.01, 0.05
+    return row
+
+
 def test_two_things_taken_for_one_are_not_something_fast():
-    """A pole is hidden for a moment as another comes into view far off: nobody ran there."""
-
-    def poles(t):
-        return [(3.0, 0.3 * t, 0.2)] if t < 1.5 else [(3.0, 0.8 + 0.1 * t, 0.2)]
-
-    _, tracker, _ = watch(poles, 1.8)
-    assert all(math.hypot(m.vx, m.vy) < 3.0 for m in tracker.movers)
+    tracks = np.vstack([track(2.5), track(3.5)])
+    kernels.judge(tracks, 0.0, 3, 0.12, 3.0, 0.4, 1.0)
+    assert tracks[:, kernels.T_MOVING].tolist() == [1.0, 0.0]
 
 
-def test_a_wall_along_the_cells_is_no_mover_as_it_comes_into_view():
-    """Its face lies on the edge of the cells, so beams pass through cells that its points lie in."""
+def test_what_comes_into_view_of_a_mover_is_no_motion():
+    cluster = np.array([[2.3, 0.0, 0.3, 1.0, 0.0, 1.0, 0.0]])
+    for cut, faster in ((0.0, True), (1.0, False)):
+        cluster[0, kernels.C_CUT] = cut
+        row = track(0.5)
+        kernels.correct(row, cluster, 0.04, 0.0)
+        assert (row[0, kernels.T_VX] > 0.51) == faster
+        assert row[0, kernels.T_X] > 2.0
 
-    def box_ranges(sensor):
-        ranges = np.full(N, np.inf)
-        for i in range(N):
-            angle = sensor.theta - math.pi + i * math.tau / N
-            ux, uy = math.cos(angle), math.sin(angle)
-            t0, t1 = -np.inf, np.inf
-            for low, high, at, u in ((2.0, 3.0, sensor.x, ux), (1.0, 2.0, sensor.y, uy)):
-                if abs(u) < 1e-9:
-                    if not low <= at <= high:
-                        t0 = np.inf
-                    continue
-                a, b = sorted(((low - at) / u, (high - at) / u))
-                t0, t1 = max(t0, a), min(t1, b)
-            if 0.0 < t0 <= t1:
-                ranges[i] = t0
-        return ranges
 
-    layer, tracker = ObstacleLayer(), Tracker()
+def look(ranges, here, known, layer, tracker, t):
+    scan = LaserScan(t, ranges, -math.pi, math.tau / N, 0.05, FAR)
+    points, beams = scan_points(ranges, 0.05, FAR, -math.pi, math.tau / N, *here)
+    moving = tracker.see(scan, here, points, beams, layer, known)
+    layer.see(scan, here, points, moving, 0.02, 0.0)
+    return points, beams
+
+
+def ranges_to_face(x, low, high):
+    """Ranges from the origin to a face at ``x`` from y ``low`` to ``high``."""
+    angles = -math.pi + np.arange(N) * math.tau / N
+    with np.errstate(divide="ignore", over="ignore"):
+        y = x * np.tan(angles)
+        hit = (np.cos(angles) > 1e-3) & (low <= y) & (y <= high)
+        return np.where(hit, x / np.cos(angles), np.inf)
+
+
+def test_a_face_along_the_edges_of_the_cells_is_not_in_space_seen_free():
+    """Half its points lie in cells that beams pass."""
+    layer, tracker, here = ObstacleLayer(), Tracker(), Pose2D(0.0, 0.0, 0.0)
+    layer.follow(0.0, 0.0)
     noise = np.random.default_rng(3)
-    for k in range(60):
-        t = k / 10
-        sensor = Pose2D(-1.0 + 0.5 * t, 0.2, 0.2 * t)
-        ranges = box_ranges(sensor) + np.clip(noise.normal(0, 0.01, N), -0.02, 0.02)
-        scan = LaserScan(t, ranges, -math.pi, math.tau / N, 0.05, FAR)
-        points, beams = scan_points(
-            scan.ranges, 0.05, FAR, scan.angle_min, scan.angle_increment, *sensor
-        )
-        layer.follow(sensor.x, sensor.y)
-        moving = tracker.see(scan, sensor, points, beams, layer)
-        layer.see(scan, sensor, points, moving, 0.02, 0.0)
-        layer.update(t)
-        assert tracker.movers == (), t
+    for k in range(10):
+        ranges = ranges_to_face(2.0, 0.0, 1.0) + np.clip(noise.normal(0, 0.01, N), -0.02, 0.02)
+        points, beams = look(ranges, here, NOTHING_KNOWN, layer, tracker, k / 10)
+    found = kernels.clusters(
+        points,
+        beams,
+        N,
+        True,
+        math.tau / N,
+        0.0,
+        0.0,
+        0.2,
+        1.3,
+        layer.free_at,
+        *layer.origin,
+        layer.config.resolution,
+        -2.0,
+        NOTHING_KNOWN.mask,
+        NOTHING_KNOWN.frame,
+    )
+    assert found[:, kernels.C_FRESH].tolist() == pytest.approx([0.0], abs=0.1)
+
+
+def test_a_walker_beside_a_wall_of_the_map_is_found():
+    """Its points and the wall's are one row; the map tells them apart."""
+    mapped = np.zeros((200, 200), bool)
+    mapped[103:115, 140:] = True  # from (4.0, 0.3) to y = 1.5, on a map from (-10, -10)
+    known = Known(inflate(mapped, 1.0), GridFrame(0.1, -10.0, -10.0))
+    layer, tracker, here = ObstacleLayer(), Tracker(), Pose2D(0.0, 0.0, 0.0)
+    layer.follow(0.0, 0.0)
+    for k in range(11):
+        walker = ranges_to([(4.5 - 0.05 * k, 0.0, 0.28)], here)
+        look(np.minimum(ranges_to_face(4.0, 0.3, 1.8), walker), here, known, layer, tracker, k / 10)
+    (mover,) = tracker.movers
+    assert (mover.vx, mover.vy) == pytest.approx((-0.5, 0.0), abs=0.25)

@@ -138,23 +138,17 @@ def way_out(
     braked, _, _ = drive(stand, state, path, seconds, around, body, spread, -1.0, ahead, limits)
     best, nearest, found = min(braked, enough), np.inf, False
     best_v = best_w = 0.0
-    code = ADMISSIBLE
     for i in range(len(MANOEUVRES)):
-        want_v, want_w, _ = asked(MANOEUVRES[i], 0.0, x, y, theta, path, 0, limits)
-        next_v, next_w = slew(v, want_v, a_v, b_v, period), slew(omega, want_w, a_w, b_w, period)
-        same = i > 0 and MANOEUVRES[i, 2] != FOLLOW and MANOEUVRES[i - 1, 2] != FOLLOW
-        same = same and (MANOEUVRES[i, :2] == MANOEUVRES[i - 1, :2]).all()
-        if not same:  # else it begins as the one before
-            code = certify(
-                nobody, body, margins, allowed, ahead, state, next_v, next_w, limits, period
-            )
-        if code != ADMISSIBLE:
-            continue
         gap, end_x, end_y = drive(
             MANOEUVRES[i], state, path, seconds, around, body, spread, need, ahead, limits
         )
         gap, left = min(gap, enough), math.hypot(goal_x - end_x, goal_y - end_y)
-        if gap > best + EVEN or (found and gap > best - EVEN and left < nearest):
+        if not (gap > best + EVEN or (found and gap > best - EVEN and left < nearest)):
+            continue
+        want_v, want_w, _ = asked(MANOEUVRES[i], 0.0, x, y, theta, path, 0, limits)
+        next_v, next_w = slew(v, want_v, a_v, b_v, period), slew(omega, want_w, a_w, b_w, period)
+        code = certify(nobody, body, margins, allowed, ahead, state, next_v, next_w, limits, period)
+        if code == ADMISSIBLE:
             best, nearest, found = max(gap, best), left, True
             best_v, best_w = next_v, next_w
     return found, best_v, best_w, braked

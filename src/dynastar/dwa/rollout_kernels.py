@@ -12,15 +12,14 @@ HEADING, DIST, VEL, SIMI = range(4)
 
 
 @njit(cache=True)
-def roll_out(
-    sample_v, sample_w, state, span, around, body, margins, allowed, ahead, wish, limits, terms
-):
+def roll_out(sample, state, span, around, body, margins, allowed, ahead, wish, limits, terms):
     """Rolls out one sample and writes its four raw terms, each in [0, 1]; returns a refusal code.
 
     The speeds go to the sample's over ``reach`` seconds and hold from there (Eq. 4, exact arcs).
     Eq. 7: along that very trajectory the first contact has to lie beyond where a stop from the
     sample's speeds would end. The other arguments are those of ``window_kernels.evaluate``.
     """
+    sample_v, sample_w = sample
     x, y, theta, v0, omega0 = state
     reach, horizon, steps = span
     field, x0, y0, resolution, movers = around

@@ -92,18 +92,7 @@ def evaluate(
         next_w = slew(omega, omega + share * (wanted_w - omega), a_w, b_w, period)
         commands[i, 0], commands[i, 1] = next_v, next_w
         code = roll_out(
-            wanted_v,
-            wanted_w,
-            state,
-            span,
-            around,
-            body,
-            margins,
-            allowed,
-            ahead,
-            wish,
-            limits,
-            terms[i],
+            samples[i], state, span, around, body, margins, allowed, ahead, wish, limits, terms[i]
         )
         stays = at_rest and next_v == 0.0 and next_w == 0.0
         if code == ADMISSIBLE and not stays:

@@ -8,7 +8,8 @@ from numba import njit
 # Columns of a cluster: centre, radius, share of points in space seen free before, first and last
 # point, and 1 if something nearer hides an end of it.
 C_X, C_Y, C_RADIUS, C_FRESH, C_FIRST, C_LAST, C_CUT = range(7)
-# Columns of a track. x and y share one covariance, for the filter treats them alike.
+# Columns of a track. x and y share one covariance, for the filter treats them alike. (T_X0, T_Y0) is
+# where it was first seen and, once it moves, where it was lost: see ``lurk``.
 T_X, T_Y, T_VX, T_VY, T_PP, T_PV, T_VV, T_RADIUS, T_HITS, T_SEEN, T_FRESH = range(11)
 T_X0, T_Y0, T_MOVING, T_SLOW_SINCE, T_CLUSTER, T_TOP = range(11, 17)
 COLUMNS = 17
