@@ -125,9 +125,12 @@ def box(length: float, width: float) -> Footprint:
 
 
 ROBOTS: dict[str, Robot] = {
-    # Table II; v_min and braking are not printed, so 0 and as accelerating.
+    # Table II; braking is not printed, so as accelerating, nor is v_min: the preset paper takes 0.
     "paper": Robot(
-        "paper", Limits(1.5, 0.5, 0.2, 0.3, 0.2, 0.3), Footprint.disc(0.3), Lidar(360, math.tau)
+        "paper",
+        Limits(1.5, 0.5, 0.2, 0.3, 0.2, 0.3, v_min=-0.5),
+        Footprint.disc(0.3),
+        Lidar(360, math.tau),
     ),
     # [Robotis]: 0.22 m/s and 2.84 rad/s; LDS-01, 360 beams, 0.12 to 3.5 m, 32 mm behind the axle.
     "turtlebot3_burger": Robot(

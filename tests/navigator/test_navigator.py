@@ -9,7 +9,8 @@ from driving import LIMITS, PERIOD, REST, ROUND, Drive, room, under_way
 from dynastar.errors import GoalOccupied, NoPath, OutOfMap
 from dynastar.geometry import Goal, Twist
 from dynastar.grid import OccupancyGrid
-from dynastar.navigator import NavigatorConfig
+from dynastar.navigator import Navigator, NavigatorConfig
+from dynastar.navigator.config import PRESETS
 from dynastar.obstacles import MovingObstacle
 from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot
 
@@ -207,3 +208,11 @@ def test_the_choice_explains_the_tick(normalisation):
     for sample in (REST, Twist(choice.samples[:, 0].max(), 0.0)):
         gap = np.abs(choice.samples - sample).max(axis=1).min()
         assert gap < 1e-9 or LIMITS.v_brake * drive.navigator.window.reach < drive.twist.v
+
+
+def test_a_preset_may_rule_out_driving_back():
+    assert ROBOTS["paper"].limits.v_min < 0.0
+    for preset, v_min in (("default", ROBOTS["paper"].limits.v_min), ("paper", 0.0)):
+        navigator = Navigator(room(), ROBOTS["paper"], PRESETS[preset])
+        assert navigator.robot.limits.v_min == v_min
+        assert navigator.passing.robot.limits.v_min == v_min

@@ -56,3 +56,13 @@ def test_out_of_sight_counts_from_when_it_was_seen_last():
     assert progress.unseen(13.1, 2.0)
     progress.restart(13.1)
     assert not progress.unseen(13.1, 2.0)
+
+
+def test_a_robot_dwells_while_it_stays_within_a_metre():
+    progress = Progress()
+    assert not progress.dwells(100.0, (3.0, 4.0), 15.0)
+    assert not progress.dwells(110.0, (3.9, 4.0), 15.0)
+    assert progress.dwells(116.0, (3.0, 4.9), 15.0)
+    assert not progress.dwells(117.0, (4.1, 4.0), 15.0)  # a metre on it counts anew
+    assert not progress.dwells(131.9, (3.3, 4.0), 15.0)
+    assert progress.dwells(132.1, (3.3, 4.0), 15.0)

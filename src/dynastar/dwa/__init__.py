@@ -2,5 +2,15 @@
 
 from dynastar.dwa.config import DwaConfig, Weights
 from dynastar.dwa.dwa import Choice, DynamicWindow, Margins, Surroundings, Wish
+from dynastar.dwa.passing import Passing
 
-__all__ = ["Choice", "DwaConfig", "DynamicWindow", "Margins", "Surroundings", "Weights", "Wish"]
+__all__ = [
+    "Choice",
+    "DwaConfig",
+    "DynamicWindow",
+    "Margins",
+    "Passing",
+    "Surroundings",
+    "Weights",
+    "Wish",
+]

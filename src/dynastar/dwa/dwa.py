@@ -7,14 +7,13 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.dwa import manoeuvre_kernels, stop_kernels, window_kernels
+from dynastar.dwa import stop_kernels, window_kernels
 from dynastar.dwa.clearance_kernels import footprint_clearance, path_clearance
 from dynastar.dwa.config import DwaConfig
 from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import Robot, slew
 
 Floats = npt.NDArray[np.float64]
-EVADE_AHEAD = 8.0  # s that a way out of movers' way looks ahead
 LEAST_CAP = 0.03  # m, so that dist always tells nearer from farther
 TERMS = ("heading", "dist", "vel", "simi")
 REFUSALS = {
@@ -45,6 +44,12 @@ class Body(NamedTuple):
     vertices: Floats
     inscribed: float
     circumscribed: float
+
+
+def body_of(robot: Robot) -> Body:
+    """A robot's footprint for the kernels."""
+    shape = robot.footprint
+    return Body(shape.vertices, shape.inscribed, shape.circumscribed)
 
 
 class Wish(NamedTuple):
@@ -151,8 +156,7 @@ class DynamicWindow:
         self._buffers = Buffers(
             np.empty((n, 2)), np.empty((n, 2)), np.zeros((n, 4)), np.zeros(n, np.int64), np.empty(n)
         )
-        shape = robot.footprint
-        self._body = Body(shape.vertices, shape.inscribed, shape.circumscribed)
+        self._body = body_of(robot)
         self._span = Span(self.reach, float(config.horizon), int(config.steps))
         self._weights = np.array(config.weights, dtype=np.float64)
 
@@ -218,9 +222,6 @@ class DynamicWindow:
         )
         state = (*pose, *twist)
         allowed = self.clearance(around, pose, margins.standing + 0.1)
-        may_pass = len(around.movers) > 0 and manoeuvre_kernels.may_pass(
-            state, wish.path, EVADE_AHEAD, around, self._body, margins, allowed, ahead, limits
-        )
         best = window_kernels.evaluate(
             self._buffers,
             n,
@@ -234,7 +235,6 @@ class DynamicWindow:
             scoring,
             limits,
             self.period,
-            may_pass,
             self._weights,
             config.normalisation == "sum",
         )
@@ -270,35 +270,6 @@ class DynamicWindow:
             if code == stop_kernels.ADMISSIBLE:
                 return Twist(v, omega)
         return None
-
-    def evade(
-        self,
-        pose: Pose2D,
-        twist: Twist,
-        around: Surroundings,
-        path: Floats,
-        margins: Margins,
-        ahead: float = 0.0,
-    ) -> Twist | None:
-        """The first step of a way that movers leave clear, or clearer than braking; or None.
-
-        Whatever it is, the robot could stop for everything that stands.
-        """
-        found, v, omega, braked = manoeuvre_kernels.way_out(
-            (*pose, *twist),
-            path,
-            EVADE_AHEAD,
-            2.0 * margins.movers,
-            around,
-            self._body,
-            margins,
-            around._replace(movers=around.movers[:0]),
-            self.clearance(around, pose, margins.standing + 0.1),
-            ahead,
-            self.robot.limits,
-            self.period,
-        )
-        return Twist(v, omega) if found and braked <= margins.movers else None
 
     def _explain(self, best: int, n: int) -> Choice:
         samples, commands, all_terms, all_refused, score = self._buffers

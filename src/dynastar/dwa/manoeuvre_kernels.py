@@ -1,154 +1,193 @@
 """Ways past movers: some seconds of driving, step by step, against where they will be."""
 
 import math
-from itertools import product
 
 import numpy as np
 from numba import njit
 
 from dynastar.dwa.clearance_kernels import footprint_clearance
-from dynastar.dwa.stop_kernels import ADMISSIBLE, arc, certify, slew
+from dynastar.dwa.stop_kernels import ADMISSIBLE, RUN_OVER, arc, certify, slew
 
 STEP = 0.2  # s
-FOLLOW = -1.0  # in place of seconds: along the path at the first of two speeds
-SPEEDS = (0.0, 0.25, 0.5, 1.0)  # of the largest
-PATH_SPEEDS = (0.125, 0.25, 0.375, 0.5, 0.75, 1.0)  # the same, along the path
-RATES = (0.0, -0.5, 0.5, -1.0, 1.0)  # of the largest
-SWITCHES = (1.0, 2.0, 4.0)  # s
-# v, omega, the seconds that they are asked for, and v, omega from then on; speeds as shares.
-MANOEUVRES = np.array(
-    [(v, 0.0, FOLLOW, v, 0.0) for v in PATH_SPEEDS]
-    + list(product(SPEEDS, RATES, SWITCHES, SPEEDS, RATES[:3]))
-)
+GENTLE = 0.8  # share of the braking that stopping where a way leads may use
 PURSUED = 6  # points of the path ahead that are steered at
-ROOM = 0.25  # share of the margin that a way has to keep; what is commanded keeps all of it
-SURE = 3.0  # s of driving over which it gets less sure how near movers come
-TOUCH = -10.0  # m, off the gap to one that is touched while the robot moves
+SURE = 1.5  # s of driving over which it gets less sure how near movers come
+LATE = 0.1  # m of gap that a second is worth by which a touch is put off
 EVEN = 0.02  # m, gaps that differ by less are even
 
 
 @njit(cache=True)
-def pursue(x, y, theta, path, at, speed):
-    """The speeds to ask for to get onto ``path`` (n, 2) and along it; the nearest point's index.
+def steer(x, y, theta, aim_x, aim_y, speed, left, limits):
+    """The speeds to ask for to get to a point, in place first if it is far aside.
 
-    ``at`` is that index so far.
+    ``left`` (m) is how far it still is to where the robot should stop.
     """
-    while at < len(path) - 1 and math.hypot(path[at + 1, 0] - x, path[at + 1, 1] - y) <= math.hypot(
-        path[at, 0] - x, path[at, 1] - y
-    ):
-        at += 1
-    aim = min(at + PURSUED, len(path) - 1)
-    dx, dy = path[aim, 0] - x, path[aim, 1] - y
-    if aim == len(path) - 1 and math.hypot(dx, dy) < 0.2:
-        return 0.0, 0.0, at
-    off = math.atan2(dy, dx) - theta
+    v_max, omega_max, _, _, b_v, b_w, v_min = limits
+    off = math.atan2(aim_y - y, aim_x - x) - theta
     off = math.atan2(math.sin(off), math.cos(off))
-    return speed * max(0.0, math.cos(1.5 * off)) if abs(off) < 1.0 else 0.0, 2.0 * off, at
+    top = min(speed, v_max)
+    way = 1.0
+    if v_min < 0.0 and abs(off) > math.pi - 1.0:  # it lies behind, and the robot may back
+        off -= math.copysign(math.pi, off)
+        top, way = min(speed, -v_min), -1.0
+    omega = math.copysign(min(omega_max, math.sqrt(2.0 * GENTLE * b_w * abs(off))), off)
+    if abs(off) >= 1.0:
+        return 0.0, omega
+    return way * min(top, math.sqrt(2.0 * GENTLE * b_v * left)) * math.cos(1.5 * off), omega
 
 
 @njit(cache=True)
-def nearest_mover(movers, after, x, y):
-    """The gap (m) from a point to movers ``after`` seconds from now, that keep on or turn back."""
+def asked(way, t, x, y, theta, path, at, limits):
+    """The speeds that a way asks for at ``t`` seconds, and the index of the path's nearest point.
+
+    A ``way`` is (v, omega, seconds, speed, x, y): v and omega are held for so long; then it leads to
+    (x, y) at the speed, straight on where they are infinite, or along ``path`` (n, 2) where they are
+    no numbers; ``at`` is the index so far. No speed is to stop.
+    """
+    v, omega, held, speed, aim_x, aim_y = way
+    if t < held - 1e-9:
+        return v, omega, at
+    if speed == 0.0 or aim_x == np.inf:
+        return speed, 0.0, at
+    if aim_x == aim_x:
+        left = math.hypot(aim_x - x, aim_y - y) - 0.1
+    else:
+        while at < len(path) - 1 and math.hypot(
+            path[at + 1, 0] - x, path[at + 1, 1] - y
+        ) <= math.hypot(path[at, 0] - x, path[at, 1] - y):
+            at += 1
+        aim = min(at + PURSUED, len(path) - 1)
+        aim_x, aim_y = path[aim]
+        left = math.hypot(path[-1, 0] - x, path[-1, 1] - y) - 0.1
+    if left <= 0.0:
+        return 0.0, 0.0, at
+    v, omega = steer(x, y, theta, aim_x, aim_y, speed, left, limits)
+    return v, omega, at
+
+
+@njit(cache=True)
+def nearest_mover(movers, after, turn, x, y):
+    """The gap (m) from a point to movers ``after`` seconds from now, if they turn back at ``turn``."""
     least = np.inf
     for m in range(len(movers)):
         mx, my, vx, vy, radius, top = movers[m]
-        speed = math.hypot(vx, vy)
-        back = -max(speed, top) / speed if speed > 1e-3 else 0.0
-        for way in (1.0, back):
-            gap = math.hypot(mx + way * vx * after - x, my + way * vy * after - y)
-            least = min(least, gap - radius)
+        span = after
+        if after > turn:
+            speed = math.hypot(vx, vy)
+            span = turn - (after - turn) * (max(speed, top) / speed if speed > 1e-3 else 0.0)
+        least = min(least, math.hypot(mx + vx * span - x, my + vy * span - y) - radius)
     return least
 
 
 @njit(cache=True)
-def asked(manoeuvre, t, x, y, theta, path, at, limits):
-    """The speeds that a manoeuvre asks for at ``t`` seconds, and the nearest point of the path."""
-    if manoeuvre[2] == FOLLOW:
-        v, omega, at = pursue(x, y, theta, path, at, manoeuvre[0] * limits.v_max)
-        return v, max(-limits.omega_max, min(limits.omega_max, omega)), at
-    first = 0 if t < manoeuvre[2] - 1e-9 else 3
-    return manoeuvre[first] * limits.v_max, manoeuvre[first + 1] * limits.omega_max, at
+def drive(way, state, path, seconds, scene, need, turns, stoppable, gaps):
+    """Drives a way for ``seconds`` and stops; returns where it is then, and whether that can be.
 
-
-@njit(cache=True)
-def drive(manoeuvre, state, path, seconds, around, body, spread, need, ahead, limits):
-    """Drives a manoeuvre for ``seconds`` and stops; returns (gap, x, y).
-
-    The gap (m) is the smallest to movers within that time, less ``spread`` (m/s) for every second
-    that the robot moves; ``TOUCH`` lower if one touches before the robot rests, -inf if it comes
-    nearer than ``need`` (m) to what stands. (x, y) is where it is after ``seconds``.
+    ``gaps`` (n,) get the smallest gap (m) to movers within that time if they turn back at each of
+    ``turns`` (n,), less the margins' spread for every second that it drives; negative, by how early
+    it is, if one may touch. With ``stoppable`` the gap counts too that there would be after a stop from
+    each moment. The robot may not come nearer than ``need`` (m) to what stands.
     """
+    around, _, body, margins, _, ahead, limits, _ = scene
     _, _, a_v, a_w, b_v, b_w, _ = limits
     x, y, theta, v, omega = state
-    least = np.inf
+    gaps[:] = np.inf
     t = moved = 0.0
     at = 0
     end_x, end_y = x, y
     while t < seconds - 1e-9 or v != 0.0 or omega != 0.0:
         want_v = want_w = 0.0
         if t < seconds - 1e-9:
-            want_v, want_w, at = asked(manoeuvre, t, x, y, theta, path, at, limits)
+            want_v, want_w, at = asked(way, t, x, y, theta, path, at, limits)
         next_v, next_w = slew(v, want_v, a_v, b_v, STEP), slew(omega, want_w, a_w, b_w, STEP)
-        rests = v == 0.0 and next_v == 0.0
+        drives = v != 0.0 or next_v != 0.0
         x, y, theta = arc(x, y, theta, 0.5 * (v + next_v) * STEP, 0.5 * (omega + next_w) * STEP)
         v, omega = next_v, next_w
         t += STEP
-        if not rests:
+        if drives:
             moved = min(moved + STEP, SURE)
-        sweeps = not rests or len(body.vertices) > 0
+        sweeps = drives or len(body.vertices) > 0
         if sweeps and footprint_clearance(around, body, need + 0.05, x, y, theta) < need - 1e-6:
-            return -np.inf, x, y
-        if t <= seconds + 1e-9:
-            end_x, end_y = x, y
-            gap = nearest_mover(around.movers, ahead + t, x, y) - body.circumscribed
-            gap -= spread * moved
-            least = min(least, gap + TOUCH if gap <= 0.0 and not rests else gap)
-    return least, end_x, end_y
+            return x, y, False
+        if t > seconds + 1e-9:
+            continue
+        end_x, end_y = x, y
+        stop = max(abs(v) / b_v, abs(omega) / b_w)
+        px, py, _ = arc(x, y, theta, 0.5 * v * stop, 0.5 * omega * stop)
+        for h in range(len(turns)):
+            if gaps[h] <= 0.0:
+                continue
+            gap = nearest_mover(around.movers, ahead + t, turns[h], x, y)
+            if stoppable:
+                gap = min(gap, nearest_mover(around.movers, ahead + t + stop, turns[h], px, py))
+            gap -= body.circumscribed + margins.spread * moved
+            gaps[h] = min(gaps[h], gap if gap > 0.0 else LATE * (t - seconds))
+    return end_x, end_y, True
 
 
 @njit(cache=True)
-def may_pass(state, path, seconds, around, body, margins, allowed, ahead, limits):
-    """Whether movers stay clear if the robot goes on along the path, at one speed or another."""
-    need = ROOM * min(margins.standing, allowed)
-    for i in range(len(PATH_SPEEDS)):
-        gap, _, _ = drive(
-            MANOEUVRES[i], state, path, seconds, around, body, margins.spread, need, ahead, limits
-        )
-        if gap > 0.0:
-            return True
-    return False
-
-
-@njit(cache=True)
-def way_out(
-    state, path, seconds, enough, around, body, margins, nobody, allowed, ahead, limits, period
-):
-    """The first command of the manoeuvre that keeps movers ``enough`` metres away, or farthest.
-
-    Of those with as large a gap it is the one that ends nearest the path's end. Returns whether one
-    is better than braking, its v and omega, and the gap (m) of braking. The command has a certified
-    stop for all that stands: ``nobody`` is ``around`` without movers.
-    """
+def first_command(way, state, path, scene):
+    """A way's first command (v, omega), whether it can stop for what stands, and before movers."""
+    around, nobody, body, margins, allowed, ahead, limits, period = scene
     _, _, a_v, a_w, b_v, b_w, _ = limits
     x, y, theta, v, omega = state
-    goal_x, goal_y = path[-1]
-    need = ROOM * min(margins.standing, allowed)
-    stand = np.zeros(5)
-    spread = margins.spread
-    braked, _, _ = drive(stand, state, path, seconds, around, body, spread, -1.0, ahead, limits)
-    best, nearest, found = min(braked, enough), np.inf, False
-    best_v = best_w = 0.0
-    for i in range(len(MANOEUVRES)):
-        gap, end_x, end_y = drive(
-            MANOEUVRES[i], state, path, seconds, around, body, spread, need, ahead, limits
-        )
-        gap, left = min(gap, enough), math.hypot(goal_x - end_x, goal_y - end_y)
-        if not (gap > best + EVEN or (found and gap > best - EVEN and left < nearest)):
+    want_v, want_w, _ = asked(way, 0.0, x, y, theta, path, 0, limits)
+    next_v, next_w = slew(v, want_v, a_v, b_v, period), slew(omega, want_w, a_w, b_w, period)
+    code = certify(nobody, body, margins, allowed, ahead, state, next_v, next_w, limits, period)
+    if code != ADMISSIBLE:
+        return next_v, next_w, False, False
+    code = certify(around, body, margins, allowed, ahead, state, next_v, next_w, limits, period)
+    return next_v, next_w, True, code in (ADMISSIBLE, RUN_OVER)
+
+
+@njit(cache=True)
+def along(speeds, least_v, enough, state, path, seconds, scene, turns, gaps):
+    """The first command of going on along the path, at the first of ``speeds`` that keeps clear.
+
+    Movers have to stay ``enough`` (m) away, and would if the robot stopped on the way. Returns whether
+    there is such a command that is faster than ``least_v``, its v and omega.
+    """
+    need = min(scene.margins.standing, scene.allowed)
+    for speed in speeds:
+        way = np.array((0.0, 0.0, 0.0, speed, np.nan, np.nan))
+        v, omega, _, safe = first_command(way, state, path, scene)
+        if not safe or v <= least_v:
             continue
-        want_v, want_w, _ = asked(MANOEUVRES[i], 0.0, x, y, theta, path, 0, limits)
-        next_v, next_w = slew(v, want_v, a_v, b_v, period), slew(omega, want_w, a_w, b_w, period)
-        code = certify(nobody, body, margins, allowed, ahead, state, next_v, next_w, limits, period)
-        if code == ADMISSIBLE:
-            best, nearest, found = max(gap, best), left, True
-            best_v, best_w = next_v, next_w
+        _, _, can_be = drive(way, state, path, seconds, scene, need, turns, True, gaps)
+        if can_be and gaps.min() > enough:
+            return True, v, omega
+    return False, 0.0, 0.0
+
+
+@njit(cache=True)
+def aside(ways, enough, state, path, seconds, scene, turns, gaps):
+    """The way, of ``ways`` (n, 6), that keeps movers ``enough`` metres away, or farthest, or latest.
+
+    That is the mean over all ``turns`` that they may take. Of those that are even it is the one that
+    ends nearest the path's end. Its first command has a certified stop for all that stands, and one
+    before movers too, unless none comes near on the way or braking ends in a touch. Returns its index
+    or -1 if none is better than braking, its first v and omega, and the least gap (m) of braking.
+    """
+    limits = scene.limits
+    goal_x, goal_y = path[-1]
+    need = min(scene.margins.standing, scene.allowed)
+    drive(np.zeros(6), state, path, seconds, scene, -1.0, turns, False, gaps)
+    braked = gaps.min()
+    best, nearest, found = np.minimum(gaps, enough).mean(), np.inf, -1
+    best_v = best_w = 0.0
+    if braked >= enough:
+        return found, best_v, best_w, braked
+    stop = max(abs(state[3]) / limits.v_brake, abs(state[4]) / limits.omega_brake)
+    doomed = braked <= 0.0 and seconds + braked / LATE <= stop + STEP
+    for i in range(len(ways)):
+        end_x, end_y, can_be = drive(ways[i], state, path, seconds, scene, need, turns, False, gaps)
+        gap, left = np.minimum(gaps, enough).mean(), math.hypot(goal_x - end_x, goal_y - end_y)
+        better = gap > best + EVEN or (found >= 0 and gap > best - EVEN and left < nearest)
+        if not can_be or not better:
+            continue
+        clear = doomed or gaps.min() > 0.0
+        v, omega, standing, moving = first_command(ways[i], state, path, scene)
+        if standing and (moving or clear):
+            best, nearest, found = max(gap, best), left, i
+            best_v, best_w = v, omega
     return found, best_v, best_w, braked

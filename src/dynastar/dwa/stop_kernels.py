@@ -8,7 +8,6 @@ from numba import njit
 from dynastar.dwa.clearance_kernels import footprint_clearance
 
 ADMISSIBLE, NO_STOP, CONTACT, MOVER, RUN_OVER = 0, 1, 2, 3, 4
-LEAVING = 0.2  # a footprint that is too near already has to gain this much clearance per metre
 TICK = 0.15  # s between the looks at where movers are
 WAYS = (1.0, 0.0, -1.0)  # a mover keeps its velocity, stands, or turns back
 
@@ -39,15 +38,15 @@ def arc_is_clear(around, body, margin, allowed, x, y, theta, length, angle):
 
     Conservative advancement: no point of the footprint moves further than |length| + R |angle|,
     so a pose that has clearance to spare vouches for the stretch after it. A footprint that is
-    nearer than the margin to begin with (``allowed`` < margin) has to leave: it gains clearance.
+    nearer than the margin to begin with (``allowed`` < margin) may not come nearer.
     """
     sweep = abs(length) + body.circumscribed * abs(angle)
     smallest = 0.25 * around.resolution
     enough = margin + 4.0 * around.resolution
+    need = min(margin, allowed)
     share = 0.0
     while True:
         px, py, ptheta = arc(x, y, theta, share * length, share * angle)
-        need = min(margin, allowed + LEAVING * share * abs(length))
         spare = footprint_clearance(around, body, enough, px, py, ptheta) - need
         if spare < -1e-6:
             return False

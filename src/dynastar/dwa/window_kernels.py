@@ -1,18 +1,13 @@
 """The window (Eqs. 5-7) and its evaluation in one pass over the samples."""
 
-import numpy as np
 from numba import njit
 
 from dynastar.dwa.rollout_kernels import normalise_and_choose, roll_out
 from dynastar.dwa.stop_kernels import (
     ADMISSIBLE,
-    RUN_OVER,
     certify,
-    first_touch,
     slew,
 )
-
-HELD = 1e9  # s of a stop so slow that the speeds are held
 
 
 @njit(cache=True)
@@ -69,7 +64,6 @@ def evaluate(
     wish,
     limits,
     period,
-    may_pass,
     weights,
     by_sum,
 ):
@@ -77,7 +71,7 @@ def evaluate(
 
     The command of a sample is the next period's step towards it; it has to have a certified stop.
     The groups are the NamedTuples of ``dwa.py``; ``allowed`` (m) is the clearance at the start,
-    which is ``ahead`` seconds from now; ``may_pass`` says whether what may not rest may go on.
+    which is ``ahead`` seconds from now.
     """
     samples, commands, terms, refused, score = buffers
     _, _, a_v, a_w, b_v, b_w, _ = limits
@@ -99,22 +93,5 @@ def evaluate(
             code = certify(
                 around, body, margins, allowed, ahead, state, next_v, next_w, limits, period
             )
-        if code == RUN_OVER and may_pass:
-            # It may not rest there; it may pass, if it gets across before any mover comes.
-            until = max(abs(next_v) / b_v, abs(next_w) / b_w) + margins.linger
-            touch = first_touch(
-                around.movers,
-                margins.spread,
-                body.circumscribed + margins.movers,
-                state,
-                wanted_v,
-                wanted_w,
-                span.reach,
-                HELD,
-                until,
-                ahead,
-            )
-            if touch == np.inf:
-                code = ADMISSIBLE
         refused[i] = code
     return normalise_and_choose(terms[:n], refused[:n], weights, by_sum, score[:n])

@@ -25,6 +25,7 @@ class NavigatorConfig(NamedTuple):
     mover_speed: Annotated[
         float, Field("so fast a mover may come into view head-on", "m/s", 0.0, 20.0)
     ] = 0.8
+    reverse: Annotated[bool, Field("drive back where the robot can, if need be")] = True
     scan_age: Annotated[float, Field("older data are no data", "s", 0.05, 5.0)] = 0.3
     unknown: Annotated[Literal["free", "blocked"], Field("plan through unknown space?")] = "blocked"
     goal_tolerance: Annotated[float, Field("so near is there", "m", 0.01, 5.0)] = 0.25
@@ -46,8 +47,10 @@ class NavigatorConfig(NamedTuple):
 
 PRESETS: dict[str, NavigatorConfig] = {
     "default": NavigatorConfig(),
-    # Eq. 2 with all its terms, the printed weights and resolutions, one period's window (Eq. 6).
+    # Eq. 2 with all its terms, the printed weights and resolutions, one period's window (Eq. 6);
+    # Table II has no speed below 0.
     "paper": NavigatorConfig(
+        reverse=False,
         planner=PlannerConfig(),
         dwa=DwaConfig(
             weights=Weights(0.5, 0.2, 0.2, 0.1),

@@ -7,14 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from dynastar.dwa import Choice, DynamicWindow, Margins, Surroundings, Wish
+from dynastar.dwa import Choice, DynamicWindow, Margins, Passing, Surroundings, Wish
 from dynastar.errors import GoalOccupied, NoPath, PlanningError
 from dynastar.geometry import Goal, Pose2D, Twist, wrap_angle
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator.braking import REST, Commands
 from dynastar.navigator.chart import Chart
 from dynastar.navigator.config import NavigatorConfig
-from dynastar.navigator.profile import SpeedProfile, bend_speed, points, wary_speed
+from dynastar.navigator.profile import SpeedProfile, bend_speed, corner_speed, points, wary_speed
 from dynastar.navigator.progress import Progress
 from dynastar.navigator.recovery import Recovery
 from dynastar.navigator.senses import Senses
@@ -27,6 +27,7 @@ from dynastar.scan import LaserScan
 
 log = logging.getLogger("dynastar")
 
+FASTER = 1e-3  # m/s by which going on past movers is worth more than what the window chose
 BEHIND = 2.8  # rad off the heading from which a target is as good as behind
 OUT_OF_SIGHT = "the path is out of sight"
 PATH_SPACING = 0.1  # m between the points of the path that simi compares with
@@ -42,6 +43,8 @@ class Navigator:
     def __init__(
         self, grid: OccupancyGrid, robot: Robot, config: NavigatorConfig = NavigatorConfig()
     ) -> None:
+        if not config.reverse:
+            robot = replace(robot, limits=robot.limits._replace(v_min=max(robot.limits.v_min, 0.0)))
         self.robot, self.config = robot, config
         half_diagonal = config.layer.resolution / math.sqrt(2.0)
         lever = math.hypot(robot.lidar.x, robot.lidar.y)
@@ -55,6 +58,7 @@ class Navigator:
         )
 
         self.window = DynamicWindow(robot, config.dwa, config.period)
+        self.passing = Passing(robot, config.period)
         self.senses = Senses(robot, config)
         self.progress, self.recovery = Progress(), Recovery(config)
         self.status = Status()
@@ -233,6 +237,7 @@ class Navigator:
                 self._profile.at(self._s),
                 self._profile.at(self._s + state.twist.v * (2.0 * config.period + config.latency)),
                 self._wary,
+                corner_speed(self.senses.corner_room(state.pose), self.robot.limits),
                 float(bend_speed(abs(bearing), self.robot.limits)),
             ),
         )
@@ -328,11 +333,19 @@ class Navigator:
     ) -> Twist:
         """Drives as chosen, out of the way of movers if standing is no good, or brakes."""
         command = choice.command
-        if len(around.movers) and (command is None or command == REST):
-            out = self.window.evade(
-                pose, twist, around, wish.path, self._margins(state), self.config.latency
+        idle = command is None or command == REST
+        if len(around.movers) and (choice.refused_for_movers or idle):
+            limit = float(self.chart.speed_limit(np.array([pose[:2]]))[0])
+            way = pose, twist, around, wish.path, self._margins(state), self.config.latency
+            past = self.passing.go_on(
+                *way,
+                faster_than=-math.inf if command is None else command.v + FASTER,
+                v_limit=min(limit, self._wary),
+                bold=self.progress.dwells(state.stamp, state.pose[:2], self.config.patience),
             )
-            command = out if out is not None else command
+            if past is None and idle:
+                past = self.passing.evade(*way, v_limit=limit)
+            command = command if past is None else past
         return (
             self._commands.brake(state) if command is None else self._commands.send(state, command)
         )

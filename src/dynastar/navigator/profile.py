@@ -12,6 +12,7 @@ SPACING = 0.1  # m between the points of the profile
 BEND = 0.5  # m either side of a point over which the path's change of heading counts as one bend
 SWING = 0.15  # m that the robot may swing wide of the path or cut it in a bend
 GENTLE = 0.7  # share of the braking that slowing down for what is ahead may use
+CORNER_ROOM = 0.4  # m
 SLOWEST = 0.1  # m/s, so that nothing ahead but a lower limit stops the robot short of it
 
 Floats = npt.NDArray[np.float64]
@@ -54,7 +55,8 @@ def turning_speed(path: Path, arc: Floats, limits: Limits) -> Floats:
     """The speed (m/s) at which the path's bend at each arc length can be driven."""
 
     def heading(s: Floats) -> Floats:
-        before, after = np.clip(s - 1e-3, 0.0, path.length), np.clip(s + 1e-3, 0.0, path.length)
+        before = np.clip(s - 1e-3, 0.0, path.length - 2e-3)
+        after = before + 2e-3
         dx, dy = (
             np.interp(after, path.arc, column) - np.interp(before, path.arc, column)
             for column in path.points.T
@@ -86,3 +88,12 @@ def wary_speed(limits: Limits, mover_speed: float, room: float) -> float:
     together the room.
     """
     return -mover_speed + math.sqrt(mover_speed**2 + 2.0 * limits.v_brake * room)
+
+
+def corner_speed(room: float, limits: Limits) -> float:
+    """The speed (m/s) from which the robot can stop within ``room`` metres, of a blind corner.
+
+    That much room is never taken to be less than ``CORNER_ROOM``: what is nearer is passed with care,
+    not stopped at.
+    """
+    return math.sqrt(2.0 * limits.v_brake * max(room, CORNER_ROOM))

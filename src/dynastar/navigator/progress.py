@@ -2,6 +2,8 @@
 
 import math
 
+DWELLING = 1.0  # m from where it was first that a robot stays
+
 
 class Progress:
     """Notes when the robot last came nearer to its goal, along the path or by turning to the target."""
@@ -9,6 +11,7 @@ class Progress:
     def __init__(self) -> None:
         self.since = self._seen = -math.inf
         self._left = self._off = math.inf
+        self._anchor, self._anchored = (math.inf, math.inf), -math.inf
 
     def restart(self, now: float) -> None:
         """Counts from ``now``, whatever was reached before."""
@@ -41,6 +44,12 @@ class Progress:
             self._off = abs(off)
             self.since = now
         return False
+
+    def dwells(self, now: float, position: tuple[float, float], patience: float) -> bool:
+        """Whether the robot stays within a metre for longer than ``patience`` seconds."""
+        if math.dist(position, self._anchor) > DWELLING:
+            self._anchor, self._anchored = position, now
+        return now - self._anchored > patience
 
     def stuck(self, now: float, patience: float) -> bool:
         """Whether nothing got better for longer than ``patience`` seconds."""

@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 
-from dynastar.dwa import DwaConfig, DynamicWindow, Margins, Surroundings
+from dynastar.dwa import Margins, Passing, Surroundings
 from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.grid import OccupancyGrid
 from dynastar.obstacles import ObstacleLayer
@@ -44,16 +44,16 @@ def warm_up() -> None:
     )
     drive(scenario)
     drive(replace(scenario, robot=ROBOTS["jackal"]))
-    _evade(scenario)
+    _pass(scenario)
 
 
-def _evade(scenario: Scenario) -> None:
-    """The way out of a walker's way, which few missions need."""
-    pose, path = Pose2D(1.0, 1.0, 0.0), Path(np.array([(1.0, 1.0), (3.0, 1.0)]))
+def _pass(scenario: Scenario) -> None:
+    """The ways past a walker, which few missions need."""
+    pose, twist = Pose2D(1.0, 1.0, 0.0), Twist(0.0, 0.0)
+    path = Path(np.array([(1.0, 1.0), (3.0, 1.0)])).resampled(0.0, 2.0, 0.1)
     walker = np.array([[2.0, 2.0, -0.5, -0.5, 0.3, 0.7]])
-    window = DynamicWindow(scenario.robot, DwaConfig(), 0.1)
+    passing, margins = Passing(scenario.robot, 0.1), Margins(0.1, 0.1, 0.1)
     layer = ObstacleLayer()
     around = Surroundings(layer.field, *layer.origin, layer.config.resolution, walker)
-    window.evade(
-        pose, Twist(0.0, 0.0), around, path.resampled(0.0, 2.0, 0.1), Margins(0.1, 0.1, 0.1)
-    )
+    passing.evade(pose, twist, around, path, margins)
+    passing.go_on(pose, twist, around, path, margins)
