@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from dynastar.clearance import distance_field
 from dynastar.dwa import Margins, Surroundings, stop_kernels
 from dynastar.dwa.dwa import Body
-from dynastar.dwa.manoeuvre_kernels import LATE, STEP, along, drive, first_command
+from dynastar.dwa.manoeuvre_kernels import LATE, STEP, along, drive, first_command, worth
 from dynastar.dwa.passing import Scene
 from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import Limits, arc, slew
@@ -49,7 +49,7 @@ def following(speed):
 
 def driven(way, turns=KEEP, v=0.0, stoppable=False, path=PATH, seconds=SECONDS, **kwargs):
     """Where a way leads, whether it can be, and the gap for each of ``turns``."""
-    gaps = np.empty(len(turns))
+    gaps, touched = np.empty(len(turns)), np.empty(len(turns))
     x, y, can_be = drive(
         np.array(way, float),
         (*HERE, v, 0.0),
@@ -60,8 +60,9 @@ def driven(way, turns=KEEP, v=0.0, stoppable=False, path=PATH, seconds=SECONDS, 
         np.array(turns),
         stoppable,
         gaps,
+        touched,
     )
-    return (x, y), can_be, gaps
+    return (x, y), can_be, gaps, touched
 
 
 @given(
@@ -88,17 +89,17 @@ def test_the_gap_is_that_of_a_drive_step_by_step(first, then, mover, turn):
             touched = t
     movers = [(5 + x, 5 + y, vx, vy, 0.3, 0.0)]
     way = straight(v_held, omega_held, held, then)
-    end, can_be, gaps = driven(way, [turn], field=WIDE, movers=movers)
+    end, can_be, gaps, times = driven(way, [turn], field=WIDE, movers=movers)
     assert can_be
     assert end == pytest.approx((at.x, at.y), abs=1e-9)
     if abs(least) > 0.02 and math.hypot(vx, vy) > 0.01:  # slower is standing
-        expected = least if math.isnan(touched) else LATE * (touched - SECONDS)
-        assert gaps[0] == pytest.approx(expected, abs=1e-6)
+        assert gaps[0] == pytest.approx(least, abs=1e-6)
+        assert times[0] == (math.inf if math.isnan(touched) else pytest.approx(touched))
 
 
 def test_following_stays_on_the_path_and_stops_at_its_end():
     bend = np.vstack([PATH[:10], PATH[9] + 0.1 * np.outer(np.arange(1, 12), (0.0, 1.0))])
-    end, can_be, _ = driven(following(0.5), path=bend, seconds=9.0)
+    end, can_be, _, _ = driven(following(0.5), path=bend, seconds=9.0)
     assert can_be
     assert math.dist(end, bend[-1]) < 0.25
 
@@ -107,7 +108,7 @@ def test_following_stays_on_the_path_and_stops_at_its_end():
 def test_a_point_aside_is_reached_and_stopped_at(angle):
     aim = 5.0 + 1.2 * math.cos(angle), 5.0 + 1.2 * math.sin(angle)
     for v in (0.0, 0.4):
-        end, _, _ = driven(to(*aim), v=v, seconds=9.0)
+        end, _, _, _ = driven(to(*aim), v=v, seconds=9.0)
         assert math.dist(end, aim) < 0.25
 
 
@@ -121,7 +122,7 @@ def test_what_lies_behind_is_backed_to_where_the_robot_may():
     assert wanted[0.0][0] == 0.0
     assert wanted[0.0][1] != 0.0
     assert wanted[-0.5] == pytest.approx((-0.1, -0.2), abs=0.1)
-    end, _, _ = driven(to(4.0, 5.1), limits=REVERSING, seconds=3.5)
+    end, _, _, _ = driven(to(4.0, 5.1), limits=REVERSING, seconds=3.5)
     assert math.dist(end, (4.0, 5.1)) < 0.2
 
 
@@ -144,9 +145,10 @@ def test_it_gets_less_sure_with_driving_and_not_with_standing():
 
 def test_turning_back_counts_from_when_they_turn_and_at_their_top_speed():
     leaving = [(5.0, 6.0, 0.0, 0.5, 0.3, 1.0)]
-    _, _, gaps = driven(STAND, (math.inf, 0.0, 4.0), movers=leaving)
+    _, _, gaps, times = driven(STAND, (math.inf, 0.0, 4.0), movers=leaving)
     assert gaps[0] == pytest.approx(0.5)  # after the first step
-    assert gaps[1] == pytest.approx(LATE * (0.4 - SECONDS), abs=LATE * STEP)
+    assert times[1] == pytest.approx(0.4, abs=STEP)
+    assert times[0] == times[2] == math.inf
     assert gaps[2] == pytest.approx(0.4)  # 2 m further at 4 s, and back by 6 s
 
 
@@ -159,6 +161,17 @@ def test_a_way_that_could_not_be_stopped_on_is_told_from_one_that_could():
     )
     assert moving > 0.0
     assert stopped < moving
+
+
+def test_a_way_is_worth_its_gaps_and_less_for_an_early_touch():
+    never, late, early = math.inf, 5.0, 1.0
+    assert worth(np.array([0.2, 0.9]), np.array([never, never]), 0.4, 6.0) == pytest.approx(0.3)
+    worths = [
+        worth(np.array([gap]), np.array([touched]), 0.4, 6.0)
+        for gap, touched in ((-0.5, early), (-0.5, late), (-0.1, late), (0.1, never))
+    ]
+    assert worths == sorted(worths)
+    assert worths[1] - worths[0] == pytest.approx(4.0 * LATE)
 
 
 # -- going on --------------------------------------------------------------------------------------
@@ -176,6 +189,7 @@ def goes_on(movers, least_v=-1.0, enough=0.15, turns=(math.inf, 0.0), field=OPEN
         scene(movers, field),
         np.array(turns),
         gaps,
+        np.empty(len(turns)),
     )
     return v if found else None
 

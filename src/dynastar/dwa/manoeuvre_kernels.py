@@ -80,18 +80,18 @@ def nearest_mover(movers, after, turn, x, y):
 
 
 @njit(cache=True)
-def drive(way, state, path, seconds, scene, need, turns, stoppable, gaps):
+def drive(way, state, path, seconds, scene, need, turns, stoppable, gaps, touched):
     """Drives a way for ``seconds`` and stops; returns where it is then, and whether that can be.
 
     ``gaps`` (n,) get the smallest gap (m) to movers within that time if they turn back at each of
-    ``turns`` (n,), less the margins' spread for every second that it drives; negative, by how early
-    it is, if one may touch. With ``stoppable`` the gap counts too that there would be after a stop from
-    each moment. The robot may not come nearer than ``need`` (m) to what stands.
+    ``turns`` (n,), less the margins' spread for every second that it drives, and ``touched`` (n,) when
+    it falls to 0, inf if it does not. With ``stoppable`` the gap counts too that there would be after a
+    stop from each moment. The robot may not come nearer than ``need`` (m) to what stands.
     """
     around, _, body, margins, _, ahead, limits, _ = scene
     _, _, a_v, a_w, b_v, b_w, _ = limits
     x, y, theta, v, omega = state
-    gaps[:] = np.inf
+    gaps[:] = touched[:] = np.inf
     t = moved = 0.0
     at = 0
     end_x, end_y = x, y
@@ -115,14 +115,23 @@ def drive(way, state, path, seconds, scene, need, turns, stoppable, gaps):
         stop = max(abs(v) / b_v, abs(omega) / b_w)
         px, py, _ = arc(x, y, theta, 0.5 * v * stop, 0.5 * omega * stop)
         for h in range(len(turns)):
-            if gaps[h] <= 0.0:
-                continue
             gap = nearest_mover(around.movers, ahead + t, turns[h], x, y)
             if stoppable:
                 gap = min(gap, nearest_mover(around.movers, ahead + t + stop, turns[h], px, py))
             gap -= body.circumscribed + margins.spread * moved
-            gaps[h] = min(gaps[h], gap if gap > 0.0 else LATE * (t - seconds))
+            gaps[h] = min(gaps[h], gap)
+            if gap <= 0.0:
+                touched[h] = min(touched[h], t)
     return end_x, end_y, True
+
+
+@njit(cache=True)
+def worth(gaps, touched, enough, seconds):
+    """What a way is worth (m): the mean of its gaps up to ``enough``, less for an early touch."""
+    total = 0.0
+    for h in range(len(gaps)):
+        total += min(gaps[h], enough) + LATE * min(touched[h] - seconds, 0.0)
+    return total / len(gaps)
 
 
 @njit(cache=True)
@@ -141,7 +150,7 @@ def first_command(way, state, path, scene):
 
 
 @njit(cache=True)
-def along(speeds, least_v, enough, state, path, seconds, scene, turns, gaps):
+def along(speeds, least_v, enough, state, path, seconds, scene, turns, gaps, touched):
     """The first command of going on along the path, at the first of ``speeds`` that keeps clear.
 
     Movers have to stay ``enough`` (m) away, and would if the robot stopped on the way. Returns whether
@@ -153,17 +162,17 @@ def along(speeds, least_v, enough, state, path, seconds, scene, turns, gaps):
         v, omega, _, safe = first_command(way, state, path, scene)
         if not safe or v <= least_v:
             continue
-        _, _, can_be = drive(way, state, path, seconds, scene, need, turns, True, gaps)
+        _, _, can_be = drive(way, state, path, seconds, scene, need, turns, True, gaps, touched)
         if can_be and gaps.min() > enough:
             return True, v, omega
     return False, 0.0, 0.0
 
 
 @njit(cache=True)
-def aside(ways, enough, state, path, seconds, scene, turns, gaps):
-    """The way, of ``ways`` (n, 6), that keeps movers ``enough`` metres away, or farthest, or latest.
+def aside(ways, enough, state, path, seconds, scene, turns, gaps, touched):
+    """The way, of ``ways`` (n, 6), that keeps movers ``enough`` metres away, or farthest and latest.
 
-    That is the mean over all ``turns`` that they may take. Of those that are even it is the one that
+    That is ``worth`` over all ``turns`` that they may take. Of those that are even it is the one that
     ends nearest the path's end. Its first command has a certified stop for all that stands, and one
     before movers too, unless none comes near on the way or braking ends in a touch. Returns its index
     or -1 if none is better than braking, its first v and omega, and the least gap (m) of braking.
@@ -171,17 +180,20 @@ def aside(ways, enough, state, path, seconds, scene, turns, gaps):
     limits = scene.limits
     goal_x, goal_y = path[-1]
     need = min(scene.margins.standing, scene.allowed)
-    drive(np.zeros(6), state, path, seconds, scene, -1.0, turns, False, gaps)
+    drive(np.zeros(6), state, path, seconds, scene, -1.0, turns, False, gaps, touched)
     braked = gaps.min()
-    best, nearest, found = np.minimum(gaps, enough).mean(), np.inf, -1
+    best, nearest, found = worth(gaps, touched, enough, seconds), np.inf, -1
     best_v = best_w = 0.0
     if braked >= enough:
         return found, best_v, best_w, braked
     stop = max(abs(state[3]) / limits.v_brake, abs(state[4]) / limits.omega_brake)
-    doomed = braked <= 0.0 and seconds + braked / LATE <= stop + STEP
+    doomed = touched.min() <= stop + STEP
     for i in range(len(ways)):
-        end_x, end_y, can_be = drive(ways[i], state, path, seconds, scene, need, turns, False, gaps)
-        gap, left = np.minimum(gaps, enough).mean(), math.hypot(goal_x - end_x, goal_y - end_y)
+        end_x, end_y, can_be = drive(
+            ways[i], state, path, seconds, scene, need, turns, False, gaps, touched
+        )
+        gap = worth(gaps, touched, enough, seconds)
+        left = math.hypot(goal_x - end_x, goal_y - end_y)
         better = gap > best + EVEN or (found >= 0 and gap > best - EVEN and left < nearest)
         if not can_be or not better:
             continue

@@ -21,6 +21,7 @@ ALONG = np.array([1.0, 0.75, 0.5, 0.375, 0.25, 0.125])  # of the top speed, alon
 SHARES = (0.25, 0.5, 1.0)  # of the top speed, on a way aside
 RATES = (0.0, -0.5, 0.5, -1.0, 1.0)  # of the largest
 HELD = (1.0, 2.0)  # s that a turning rate is held
+BACKED = (1.0, 2.0, 4.0)  # s that the robot backs, where it may
 REACHES = (2.0, 4.0, 8.0)  # radii of the footprint that a way aside leads
 ANGLES = np.linspace(-math.pi, math.pi, 16, endpoint=False)  # rad
 
@@ -78,6 +79,7 @@ class Passing:
             self._scene(pose, around, margins, ahead),
             turns,
             np.empty(len(turns)),
+            np.empty(len(turns)),
         )
         return Twist(v, omega) if found else None
 
@@ -106,6 +108,7 @@ class Passing:
             self._scene(pose, around, margins, ahead),
             TURNS,
             np.empty(len(TURNS)),
+            np.empty(len(TURNS)),
         )
         if found < 0 or braked > margins.movers:
             self._way = []
@@ -126,6 +129,11 @@ class Passing:
         for share, rate, held, then in product((0.0, *SHARES), RATES, HELD, (0.0, *SHARES)):
             omega = rate * self.robot.limits.omega_max
             ways.append((top * share, omega, held, top * then, math.inf, math.inf))
+        if self.robot.limits.v_min < 0.0:
+            back = max(-top, self.robot.limits.v_min)
+            for rate, held in product(RATES, BACKED):
+                omega = rate * self.robot.limits.omega_max
+                ways.append((back, omega, held, 0.0, math.inf, math.inf))
         return ways
 
     def _scene(self, pose: Pose2D, around: Surroundings, margins: Margins, ahead: float) -> Scene:
