@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 # Columns of a cluster: centre, radius, share of points in space seen free before, first and last
-# point, and 1 if something nearer hides an end of it.
+# point, and how many of its ends are hidden by something nearer or lie at what the map shows.
 C_X, C_Y, C_RADIUS, C_FRESH, C_FIRST, C_LAST, C_CUT = range(7)
 # Columns of a track. x and y share one covariance, for the filter treats them alike. (T_X0, T_Y0) is
 # where it was first seen and, once it moves, where it was lost: see ``lurk``.
@@ -16,9 +16,32 @@ COLUMNS = 17
 LOST = 0.5  # s after which a mover that is seen again has its velocity measured anew
 HIDING = 2.0  # m ahead of where it was last that a mover may be hidden
 BEHIND = 1.5  # cells behind a point to where its space has to have been seen free before
-HIDDEN = 4.0  # so much less sure is the centre of something partly hidden
+HALF_SEEN = 0.3  # m, the radius of something that one end is hidden of, unless more is seen
+HIDDEN = (1.0, 1.5, 4.0)  # so much less sure is a centre with so many ends hidden
 TOP_KEPT = 0.97  # of a mover's top speed from scan to scan
 DISC_DEPTH = 0.25 * math.pi  # mean depth of a disc's visible half, in radii
+
+
+@njit(cache=True)
+def disc_at_end(points, start, stop, hidden, radius, half_step, sensor_x, sensor_y):
+    """The centre of a disc whose one edge is the visible end of a group of points.
+
+    ``hidden`` is 1 if the group's first end is the hidden one, -1 if its last is. However much of
+    the disc comes into view, the centre that this gives moves as the disc does.
+    """
+    n = len(points)
+    end = ((stop - 1) if hidden > 0 else start) % n
+    end_x, end_y = points[end, 0] - sensor_x, points[end, 1] - sensor_y
+    far = math.hypot(end_x, end_y)
+    angle = math.atan2(end_y, end_x) + hidden * (half_step - math.asin(min(1.0, radius / far)))
+    ux, uy = math.cos(angle), math.sin(angle)
+    depth = 0.0
+    for k in range(start, stop):
+        px, py = points[k % n, 0] - sensor_x, points[k % n, 1] - sensor_y
+        off = ux * py - uy * px
+        depth += ux * px + uy * py + math.sqrt(max(radius * radius - off * off, 0.0))
+    depth /= stop - start
+    return sensor_x + depth * ux, sensor_y + depth * uy
 
 
 @njit(cache=True)
@@ -113,14 +136,23 @@ def clusters(
                 found[m, C_FIRST] = start
                 found[m, C_LAST] = stop - 1
                 found[m, C_CUT] = 0.0
-                for end, beside in ((a, (start - 1) % n), (b, stop % n)):
+                one_end = 0  # the hidden one, if it is one: 1 the first, -1 the last
+                for end, beside, side in ((a, (start - 1) % n, 1), (b, stop % n, -1)):
                     skipped = abs(beams[end] - beams[beside])
                     beside_r = math.hypot(
                         points[beside, 0] - sensor_x, points[beside, 1] - sensor_y
                     )
                     end_r = math.hypot(points[end, 0] - sensor_x, points[end, 1] - sensor_y)
-                    if min(skipped, n_beams - skipped) <= 3 and beside_r < end_r - gap:
-                        found[m, C_CUT] = 1.0
+                    nearer = beside_r < end_r + (gap if mapped[beside] else -gap)
+                    if min(skipped, n_beams - skipped) <= 3 and nearer:
+                        found[m, C_CUT] += 1.0
+                        one_end += side
+                if one_end != 0:
+                    radius = max(radius, HALF_SEEN)
+                    found[m, C_RADIUS] = radius
+                    found[m, C_X], found[m, C_Y] = disc_at_end(
+                        points, start, stop, one_end, radius, 0.5 * step, sensor_x, sensor_y
+                    )
                 m += 1
         start = stop
     return found[:m]
@@ -174,10 +206,10 @@ def correct(tracks, found, error, now):
         c = found[int(row[T_CLUSTER])]
         if now - row[T_SEEN] > LOST:  # where it is now says nothing of how fast it went
             row[T_PP], row[T_PV], row[T_VV] = 1.0, 0.0, 0.25
-        r = (error * (HIDDEN if c[C_CUT] > 0.0 else 1.0)) ** 2
+        r = (error * HIDDEN[int(c[C_CUT])]) ** 2
         s = row[T_PP] + r
         k_p, k_v = row[T_PP] / s, row[T_PV] / s
-        if c[C_CUT] > 0.0 and row[T_MOVING] > 0.0:  # what comes into view of it is no motion
+        if c[C_CUT] > 1.0 and row[T_MOVING] > 0.0:  # what comes into view of it is no motion
             k_v = 0.0
         ex, ey = c[C_X] - row[T_X], c[C_Y] - row[T_Y]
         row[T_X] += k_p * ex
