@@ -32,7 +32,8 @@ def scene(movers=(), field=OPEN, spread=0.0, limits=LIMITS):
     rows = np.array(movers, float).reshape(-1, 6)
     around = Surroundings(field, low, low, 0.05, rows)
     margins = Margins(0.05, 0.15, spread, 8.0)
-    return Scene(around, around._replace(movers=rows[:0]), BODY, margins, 1.0, 0.0, limits, 0.1)
+    nobody = around._replace(movers=rows[:0])
+    return Scene(around, nobody, around, BODY, margins, 1.0, 0.0, limits, 0.1)
 
 
 def straight(v, omega=0.0, held=0.0, then=None):

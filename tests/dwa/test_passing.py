@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dynastar.clearance import distance_field
-from dynastar.dwa import Margins, Passing, Surroundings, stop_kernels
+from dynastar.dwa import Margins, Passing, Start, Surroundings, stop_kernels
 from dynastar.dwa.dwa import body_of
 from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import Footprint, Limits, Robot, arc, slew
@@ -26,7 +26,7 @@ def past(movers, field=OPEN):
 
 
 def evade(movers, twist=Twist(0.0, 0.0), field=OPEN, robot=ROBOT):
-    return Passing(robot, 0.1).evade(HERE, twist, past(movers, field), PATH, MARGINS)
+    return Passing(robot, 0.1).evade(Start(HERE, twist, past(movers, field), PATH, MARGINS))
 
 
 @pytest.mark.parametrize("v_min", [0.0, -0.5])
@@ -39,7 +39,7 @@ def test_a_robot_at_rest_leaves_the_way_of_what_comes(angle, v_min):
     passing = Passing(Robot("", LIMITS._replace(v_min=v_min), ROBOT.footprint), 0.1)
     for _ in range(70):
         around = past([(*mover, *velocity, 0.3, 0.8)])
-        command = passing.evade(at, twist, around, PATH, MARGINS)
+        command = passing.evade(Start(at, twist, around, PATH, MARGINS))
         assert least < math.inf or command is not None
         if command is None:
             command = Twist(
@@ -79,12 +79,11 @@ def test_with_walls_on_either_side_there_is_no_way_out():
 def test_the_maps_speed_limit_holds_for_ways_past_movers(v_limit):
     around = past([(6.5, 9.5, 0.0, -0.4, 0.3, 0.4)])
     passing, twist = Passing(ROBOT, 0.1), Twist(v_limit, 0.0)
-    command = passing.go_on(HERE, twist, around, PATH, MARGINS, v_limit=v_limit)
+    command = passing.go_on(Start(HERE, twist, around, PATH, MARGINS), v_limit=v_limit)
     assert command is not None
     assert command.v <= v_limit + 1e-9
-    away = passing.evade(
-        HERE, twist, past([(5.2, 8.0, 0.0, -0.6, 0.3, 0.6)]), PATH, MARGINS, v_limit=v_limit
-    )
+    comes = past([(5.2, 8.0, 0.0, -0.6, 0.3, 0.6)])
+    away = passing.evade(Start(HERE, twist, comes, PATH, MARGINS), v_limit)
     assert away is not None
     assert abs(away.v) <= v_limit + 1e-9
 
@@ -96,7 +95,9 @@ def test_setting_out_asks_for_more_of_a_gap_than_carrying_on():
         around = past([(6.5, y, 0.0, -0.4, 0.3, 0.4)])
         outcomes.append(
             tuple(
-                passing.go_on(HERE, Twist(0.3, 0.0), around, PATH, MARGINS, faster_than=faster)
+                passing.go_on(
+                    Start(HERE, Twist(0.3, 0.0), around, PATH, MARGINS), faster_than=faster
+                )
                 is not None
                 for faster in (0.0, -math.inf)
             )
@@ -104,6 +105,20 @@ def test_setting_out_asks_for_more_of_a_gap_than_carrying_on():
     assert (False, True) in outcomes
     assert (True, True) in outcomes
     assert (True, False) not in outcomes
+
+
+def test_what_is_out_of_sight_is_driven_through_only_when_hoped_to_be_free():
+    unseen = np.zeros((200, 200), bool)
+    unseen[:, 140:] = True  # from x = 7, where the path ends at 7.9
+    seen = past([(6.0, 9.0, 0.0, 0.4, 0.3, 0.4)], distance_field(unseen, 0.05))
+    start = Start(HERE, Twist(0.0, 0.0), seen, PATH, MARGINS)
+    passing = Passing(ROBOT, 0.1)
+    assert passing.go_on(start) is None
+    command = passing.go_on(start, hoped=seen._replace(field=OPEN))
+    assert command is not None
+    assert command.v > 0.0
+    there = start._replace(pose=Pose2D(6.5, 5.0, 0.0), twist=Twist(0.7, 0.0))
+    assert passing.go_on(there, hoped=seen._replace(field=OPEN)) is None  # it could not stop
 
 
 @given(st.integers(0, 10**6), st.sampled_from([0.0, 0.5]))

@@ -175,3 +175,20 @@ def test_coarse_maps_are_planned_on_finer_and_speed_limits_go_along():
     assert made.blocked.shape == (60, 80)
     found = made.speed_limit(np.array([(3.9, 3.0), (4.1, 3.0), (-1.0, 3.0), (7.9, 99.0)]))
     assert found.tolist() == [math.inf, 0.5, math.inf, math.inf]
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.5])
+def test_what_blocks_under_a_layer_is_the_maps_and_the_seen_and_all_off_the_map(yaw):
+    grid = room(yaw=yaw)
+    made = chart(grid)
+    layer = layer_showing(SEEN_OCCUPIED, 3.8, 2.6, 4.2, 3.4, (2.0, 3.0), grid.frame)
+    made.take_in(layer)
+    under = made.blocked_under(layer)
+    assert under.shape == layer.states.shape
+    a, origin = layer.config.resolution, np.array(layer.origin)
+    rows, columns = np.mgrid[: len(under) : 7, : len(under) : 7]
+    for row, column in zip(rows.ravel(), columns.ravel(), strict=True):
+        point = origin + a * (np.array([column, row]) + 0.5)
+        cell = np.floor(grid.frame.points_to_grid(point[None]))[0].astype(int)
+        inside = (0 <= cell).all() and (cell < made.prior.shape).all()
+        assert under[row, column] == (not inside or made.blocked[tuple(cell)])

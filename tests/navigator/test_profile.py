@@ -6,14 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from dynastar.navigator.profile import (
-    CORNER_ROOM,
     GENTLE,
     SLOWEST,
     SPACING,
     SWING,
     SpeedProfile,
     bend_speed,
-    corner_speed,
     points,
     turning_speed,
     wary_speed,
@@ -113,11 +111,3 @@ def test_the_ends_of_a_path_are_no_bends(direction, length):
     end = length * math.cos(direction), length * math.sin(direction)
     path = Path(np.array([(0.0, 0.0), end]))
     assert turning_speed(path, np.linspace(0.0, length, 20), LIMITS).min() > 10.0 * LIMITS.v_max
-
-
-def test_a_blind_corner_can_be_stopped_at_until_it_is_near():
-    for room in (1.0, 3.0):
-        assert corner_speed(room, LIMITS) ** 2 / (2.0 * LIMITS.v_brake) == pytest.approx(room)
-    slowest = corner_speed(CORNER_ROOM, LIMITS)
-    assert corner_speed(0.1, LIMITS) == corner_speed(-0.3, LIMITS) == slowest > 0.4
-    assert corner_speed(math.inf, LIMITS) == math.inf

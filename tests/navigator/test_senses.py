@@ -145,14 +145,3 @@ def test_sensor_loss_stops_along_the_arc_in_the_stopping_time_and_goes_on_afterw
     assert math.dist(drive.pose[:2], expected[:2]) < 0.02
     assert drive.pose.theta == pytest.approx(expected.theta, abs=0.05)
     drive.until("arrived")
-
-
-def test_the_nearest_corner_ahead_of_any_lidar_counts():
-    box = (4.0, 3.6, 5.0, 4.6)
-    drive = Drive(room(8.0, 6.0, box), pose=(2.0, 3.0, 0.0))
-    drive.navigator.set_goal(Goal(6.5, 3.0))
-    drive.tick()
-    senses = drive.navigator.senses
-    nearest = senses.corner_room(drive.pose)
-    assert nearest == pytest.approx(math.hypot(2.0, 1.6) - 0.25, abs=0.1)  # its upper left
-    assert senses.corner_room(drive.pose._replace(theta=math.pi)) == math.inf

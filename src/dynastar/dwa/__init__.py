@@ -2,7 +2,7 @@
 
 from dynastar.dwa.config import DwaConfig, Weights
 from dynastar.dwa.dwa import Choice, DynamicWindow, Margins, Surroundings, Wish
-from dynastar.dwa.passing import Passing
+from dynastar.dwa.passing import Passing, Start
 
 __all__ = [
     "Choice",
@@ -10,6 +10,7 @@ __all__ = [
     "DynamicWindow",
     "Margins",
     "Passing",
+    "Start",
     "Surroundings",
     "Weights",
     "Wish",

@@ -10,7 +10,7 @@ from dynastar.dwa.stop_kernels import ADMISSIBLE, RUN_OVER, arc, certify, slew
 
 STEP = 0.2  # s
 GENTLE = 0.8  # share of the braking that stopping where a way leads may use
-PURSUED = 6  # points of the path ahead that are steered at
+PURSUED = 3  # points of the path ahead that are steered at
 SURE = 1.5  # s of driving over which it gets less sure how near movers come
 LATE = 0.1  # m of gap that a second is worth by which a touch is put off
 EVEN = 0.02  # m, gaps that differ by less are even
@@ -88,7 +88,7 @@ def drive(way, state, path, seconds, scene, need, turns, stoppable, gaps, touche
     it falls to 0, inf if it does not. With ``stoppable`` the gap counts too that there would be after a
     stop from each moment. The robot may not come nearer than ``need`` (m) to what stands.
     """
-    around, _, body, margins, _, ahead, limits, _ = scene
+    _, _, around, body, margins, _, ahead, limits, _ = scene
     _, _, a_v, a_w, b_v, b_w, _ = limits
     x, y, theta, v, omega = state
     gaps[:] = touched[:] = np.inf
@@ -137,7 +137,7 @@ def worth(gaps, touched, enough, seconds):
 @njit(cache=True)
 def first_command(way, state, path, scene):
     """A way's first command (v, omega), whether it can stop for what stands, and before movers."""
-    around, nobody, body, margins, allowed, ahead, limits, period = scene
+    around, nobody, _, body, margins, allowed, ahead, limits, period = scene
     _, _, a_v, a_w, b_v, b_w, _ = limits
     x, y, theta, v, omega = state
     want_v, want_w, _ = asked(way, 0.0, x, y, theta, path, 0, limits)

@@ -26,14 +26,26 @@ REACHES = (2.0, 4.0, 8.0)  # radii of the footprint that a way aside leads
 ANGLES = np.linspace(-math.pi, math.pi, 16, endpoint=False)  # rad
 
 
+class Start(NamedTuple):
+    """Where a way past movers begins, ``ahead`` seconds from now, and the path (n, 2) from there."""
+
+    pose: Pose2D
+    twist: Twist
+    around: Surroundings
+    path: Floats
+    margins: Margins
+    ahead: float = 0.0
+
+
 class Scene(NamedTuple):
-    """What a way past movers is driven in; ``nobody`` is ``around`` without movers.
+    """What a way past movers is driven in: all that is known, that without movers, what is hoped.
 
     ``allowed`` (m) is the clearance at the start, which is ``ahead`` seconds from now.
     """
 
     around: Surroundings
     nobody: Surroundings
+    hoped: Surroundings
     body: Body
     margins: Margins
     allowed: float
@@ -52,65 +64,53 @@ class Passing:
 
     def go_on(
         self,
-        pose: Pose2D,
-        twist: Twist,
-        around: Surroundings,
-        path: Floats,
-        margins: Margins,
-        ahead: float = 0.0,
+        start: Start,
         faster_than: float = -math.inf,
         v_limit: float = math.inf,
-        bold: bool = False,
+        hoped: Surroundings | None = None,
     ) -> Twist | None:
         """A command to go on along the path, faster than ``faster_than``, that movers leave clear.
 
-        The robot may not be able to rest where that leads, but to drive on. ``bold`` takes it that
-        movers keep their velocities and do not turn back.
+        The robot may not be able to rest where that leads, but to drive on. With ``hoped``, what is
+        out of sight is as that has it, and movers keep their velocities and do not turn back; the
+        command itself can stop for what is known all the same.
         """
-        turns = TURNS[:1] if bold else TURNS[:2]
+        turns = TURNS[:2] if hoped is None else TURNS[:1]
         spare = GOING if faster_than > -math.inf else 0.0  # to begin with, not to carry on
         found, v, omega = manoeuvre_kernels.along(
             min(v_limit, self.robot.limits.v_max) * ALONG,
             faster_than,
-            margins.movers + spare,
-            (*pose, *twist),
-            path,
+            start.margins.movers + spare,
+            (*start.pose, *start.twist),
+            start.path,
             AHEAD,
-            self._scene(pose, around, margins, ahead),
+            self._scene(start, hoped or start.around),
             turns,
             np.empty(len(turns)),
             np.empty(len(turns)),
         )
         return Twist(v, omega) if found else None
 
-    def evade(
-        self,
-        pose: Pose2D,
-        twist: Twist,
-        around: Surroundings,
-        path: Floats,
-        margins: Margins,
-        ahead: float = 0.0,
-        v_limit: float = math.inf,
-    ) -> Twist | None:
+    def evade(self, start: Start, v_limit: float = math.inf) -> Twist | None:
         """The first step of a way that movers leave clear, or clearer than braking; or None.
 
         Whatever it is, the robot could stop for everything that stands. A way once taken is among
         those that the next call looks at.
         """
-        ways = np.array([*self._way, *self._ways(pose, min(v_limit, self.robot.limits.v_max))])
+        top = min(v_limit, self.robot.limits.v_max)
+        ways = np.array([*self._way, *self._ways(start.pose, top)])
         found, v, omega, braked = manoeuvre_kernels.aside(
             ways,
-            2.0 * margins.movers,
-            (*pose, *twist),
-            path,
+            2.0 * start.margins.movers,
+            (*start.pose, *start.twist),
+            start.path,
             AHEAD,
-            self._scene(pose, around, margins, ahead),
+            self._scene(start, start.around),
             TURNS,
             np.empty(len(TURNS)),
             np.empty(len(TURNS)),
         )
-        if found < 0 or braked > margins.movers:
+        if found < 0 or braked > start.margins.movers:
             self._way = []
             return None
         self._way = [ways[found]]
@@ -136,14 +136,16 @@ class Passing:
                 ways.append((back, omega, held, 0.0, math.inf, math.inf))
         return ways
 
-    def _scene(self, pose: Pose2D, around: Surroundings, margins: Margins, ahead: float) -> Scene:
+    def _scene(self, start: Start, hoped: Surroundings) -> Scene:
+        around, margins = start.around, start.margins
         return Scene(
             around,
             around._replace(movers=around.movers[:0]),
+            hoped,
             self._body,
             margins,
-            float(footprint_clearance(around, self._body, margins.standing + 0.1, *pose)),
-            float(ahead),
+            float(footprint_clearance(around, self._body, margins.standing + 0.1, *start.pose)),
+            float(start.ahead),
             self.robot.limits,
             self.period,
         )

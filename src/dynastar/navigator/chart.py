@@ -71,6 +71,13 @@ class Chart:
         self._mark(changed, low)
         return True
 
+    def blocked_under(self, layer: ObstacleLayer) -> Mask:
+        """Whether something stands under each of a layer's cells; off the chart it does."""
+        low, high, below = self._window(layer)
+        part = np.s_[low[0] : high[0], low[1] : high[1]]
+        blocked = (self.prior[part] & ~self.cleared[part]) | self.seen[part]
+        return np.append(blocked.ravel(), True)[below]
+
     def forget(self) -> None:
         """Drops everything seen."""
         changed = self.seen.copy()

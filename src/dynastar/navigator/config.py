@@ -25,6 +25,9 @@ class NavigatorConfig(NamedTuple):
     mover_speed: Annotated[
         float, Field("so fast a mover may come into view head-on", "m/s", 0.0, 20.0)
     ] = 0.8
+    hidden_speed: Annotated[
+        float, Field("so fast somebody may step out of hiding, 0 if nobody does", "m/s", 0.0, 20.0)
+    ] = 0.5
     reverse: Annotated[bool, Field("drive back where the robot can, if need be")] = True
     scan_age: Annotated[float, Field("older data are no data", "s", 0.05, 5.0)] = 0.3
     unknown: Annotated[Literal["free", "blocked"], Field("plan through unknown space?")] = "blocked"
@@ -35,7 +38,7 @@ class NavigatorConfig(NamedTuple):
     )
     planning_resolution: Annotated[float, Field("plan on cells no larger", "m", 0.01, 10.0)] = 0.1
     comfort: Annotated[float, Field("clearance a plan has to spare if it can", "m", 0.0, 5.0)] = 0.1
-    deviation: Annotated[float, Field("replan when so far off the path", "m", 0.1, 50.0)] = 1.0
+    deviation: Annotated[float, Field("replan when so far off the path", "m", 0.1, 50.0)] = 0.5
     stuck_time: Annotated[float, Field("no progress for so long is stuck", "s", 0.5, 120.0)] = 6.0
     patience: Annotated[float, Field("wait for a mover so long", "s", 0.0, 600.0)] = 15.0
     attempts: Annotated[int, Field("rounds of recovery before giving up", "", 1, 100)] = 4

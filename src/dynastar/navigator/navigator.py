@@ -7,14 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from dynastar.dwa import Choice, DynamicWindow, Margins, Passing, Surroundings, Wish
+from dynastar.clearance import distance_field
+from dynastar.dwa import Choice, DynamicWindow, Margins, Passing, Start, Surroundings, Wish
 from dynastar.errors import GoalOccupied, NoPath, PlanningError
 from dynastar.geometry import Goal, Pose2D, Twist, wrap_angle
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator.braking import REST, Commands
 from dynastar.navigator.chart import Chart
 from dynastar.navigator.config import NavigatorConfig
-from dynastar.navigator.profile import SpeedProfile, bend_speed, corner_speed, points, wary_speed
+from dynastar.navigator.lookout import Lookout
+from dynastar.navigator.profile import SpeedProfile, bend_speed, points, wary_speed
 from dynastar.navigator.progress import Progress
 from dynastar.navigator.recovery import Recovery
 from dynastar.navigator.senses import Senses
@@ -60,6 +62,7 @@ class Navigator:
         self.window = DynamicWindow(robot, config.dwa, config.period)
         self.passing = Passing(robot, config.period)
         self.senses = Senses(robot, config)
+        self.lookout = Lookout(robot, config)
         self.progress, self.recovery = Progress(), Recovery(config)
         self.status = Status()
         self._goals: list[Goal] = []
@@ -237,7 +240,15 @@ class Navigator:
                 self._profile.at(self._s),
                 self._profile.at(self._s + state.twist.v * (2.0 * config.period + config.latency)),
                 self._wary,
-                corner_speed(self.senses.corner_room(state.pose), self.robot.limits),
+                self.lookout.speed(
+                    now,
+                    state.twist.v,
+                    self._wary,
+                    self._path,
+                    self._s,
+                    self.senses.layer,
+                    self.chart,
+                ),
                 float(bend_speed(abs(bearing), self.robot.limits)),
             ),
         )
@@ -336,19 +347,26 @@ class Navigator:
         idle = command is None or command == REST
         if len(around.movers) and (choice.refused_for_movers or idle):
             limit = float(self.chart.speed_limit(np.array([pose[:2]]))[0])
-            way = pose, twist, around, wish.path, self._margins(state), self.config.latency
+            start = Start(pose, twist, around, wish.path, self._margins(state), self.config.latency)
             past = self.passing.go_on(
-                *way,
+                start,
                 faster_than=-math.inf if command is None else command.v + FASTER,
                 v_limit=min(limit, self._wary),
-                bold=self.progress.dwells(state.stamp, state.pose[:2], self.config.patience),
+                hoped=self._hoped(state, around),
             )
             if past is None and idle:
-                past = self.passing.evade(*way, v_limit=limit)
+                past = self.passing.evade(start, limit)
             command = command if past is None else past
         return (
             self._commands.brake(state) if command is None else self._commands.send(state, command)
         )
+
+    def _hoped(self, state: RobotState, around: Surroundings) -> Surroundings | None:
+        """After long in one place, the surroundings with what is out of sight as the chart has it."""
+        if not self.progress.dwells(state.stamp, state.pose[:2], self.config.patience):
+            return None
+        blocked = self.chart.blocked_under(self.senses.layer)
+        return around._replace(field=distance_field(blocked, around.resolution))
 
     def _margins(self, state: RobotState) -> Margins:
         """The margins, with what a heading error adds over the length of a stop."""

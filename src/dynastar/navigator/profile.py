@@ -12,7 +12,6 @@ SPACING = 0.1  # m between the points of the profile
 BEND = 0.5  # m either side of a point over which the path's change of heading counts as one bend
 SWING = 0.15  # m that the robot may swing wide of the path or cut it in a bend
 GENTLE = 0.7  # share of the braking that slowing down for what is ahead may use
-CORNER_ROOM = 0.4  # m
 SLOWEST = 0.1  # m/s, so that nothing ahead but a lower limit stops the robot short of it
 
 Floats = npt.NDArray[np.float64]
@@ -88,12 +87,3 @@ def wary_speed(limits: Limits, mover_speed: float, room: float) -> float:
     together the room.
     """
     return -mover_speed + math.sqrt(mover_speed**2 + 2.0 * limits.v_brake * room)
-
-
-def corner_speed(room: float, limits: Limits) -> float:
-    """The speed (m/s) from which the robot can stop within ``room`` metres, of a blind corner.
-
-    That much room is never taken to be less than ``CORNER_ROOM``: what is nearer is passed with care,
-    not stopped at.
-    """
-    return math.sqrt(2.0 * limits.v_brake * max(room, CORNER_ROOM))

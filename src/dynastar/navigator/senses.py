@@ -5,7 +5,6 @@ from collections import deque
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
 from dynastar.dwa import Surroundings
 from dynastar.geometry import Pose2D, compose, interpolate, wrap_angle
@@ -13,12 +12,10 @@ from dynastar.grid import OccupancyGrid
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.status import RobotState
 from dynastar.obstacles import Known, MovingObstacle, ObstacleLayer, Tracker
-from dynastar.obstacles.corner_kernels import blind_corners, nearest_corner
 from dynastar.obstacles.layer_kernels import scan_points
 from dynastar.robot import Robot
 from dynastar.scan import LaserScan
 
-AHEAD = math.radians(60.0)  # off the heading: where something may step out from a blind corner
 HISTORY = 2.0  # s of poses kept to place scans by
 
 
@@ -30,7 +27,6 @@ class Senses:
         self.layer, self.tracker = ObstacleLayer(config.layer), Tracker(config.tracker)
         self._poses: deque[RobotState] = deque()
         self._beams: dict[Pose2D, int] = {}
-        self._corners: dict[Pose2D, npt.NDArray[np.float64]] = {}
         self._seen: dict[Pose2D, float] = {}  # the newest stamp of each sensor
         self._fresh = True
         self._jumped_to: Pose2D | None = None
@@ -117,24 +113,11 @@ class Senses:
             self.layer.field, *self.layer.origin, self.layer.config.resolution, array
         )
 
-    def corner_room(self, pose: Pose2D) -> float:
-        """Metres from the footprint to the nearest blind corner ahead, inf if there is none."""
-        nearest = (nearest_corner(corners, *pose, AHEAD) for corners in self._corners.values())
-        return min(map(float, nearest), default=math.inf) - self.robot.footprint.circumscribed
-
     def _see(self, scan: LaserScan, known: Known) -> None:
         self._beams.setdefault(scan.mount, len(scan.ranges))
         self._seen[scan.mount] = scan.stamp
         sensor = compose(self._pose_at(scan.stamp), scan.mount)
         points, beams = scan_points(
-            scan.ranges,
-            scan.range_min,
-            scan.range_max,
-            scan.angle_min,
-            scan.angle_increment,
-            *sensor,
-        )
-        self._corners[scan.mount] = blind_corners(
             scan.ranges,
             scan.range_min,
             scan.range_max,

@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 
-from dynastar.dwa import Margins, Passing, Surroundings
+from dynastar.dwa import Margins, Passing, Start, Surroundings
 from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.grid import OccupancyGrid
 from dynastar.obstacles import ObstacleLayer
@@ -55,5 +55,6 @@ def _pass(scenario: Scenario) -> None:
     passing, margins = Passing(scenario.robot, 0.1), Margins(0.1, 0.1, 0.1)
     layer = ObstacleLayer()
     around = Surroundings(layer.field, *layer.origin, layer.config.resolution, walker)
-    passing.evade(pose, twist, around, path, margins)
-    passing.go_on(pose, twist, around, path, margins)
+    start = Start(pose, twist, around, path, margins)
+    passing.evade(start)
+    passing.go_on(start)

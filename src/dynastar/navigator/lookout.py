@@ -1,0 +1,94 @@
+"""Who may come out of hiding: slow enough where a lane leads out of it onto the path."""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.navigator import lookout_kernels
+from dynastar.navigator.chart import Chart
+from dynastar.navigator.config import NavigatorConfig
+from dynastar.obstacles import ObstacleLayer
+from dynastar.path import Path
+from dynastar.robot import Robot
+
+AHEAD = 3.0  # m of the path onto which somebody may come
+FURTHER = 3.0  # m of the path that the robot may go on
+EVERY = 0.2  # m between the points that they may come onto
+SPACING = 0.1  # m between the path's points
+RADIUS = 0.3  # m, of somebody
+COME = 1.2  # m that they have come straight to where they are hidden
+NEAR = 3.0  # m from the path, beyond which there is time enough
+UNSEEN = 0.35  # s without having been seen free, and somebody may be there
+REACTION = 0.4  # s until they are known to move
+LOOK = 4.0  # s of driving on
+SLOW = 0.3  # m/s, slower than which the robot goes for nobody that it does not see
+
+
+class View(NamedTuple):
+    """What is known of the cells (n, n) round the robot, their low corner and size.
+
+    ``free_at`` s when each was last seen free, ``since`` s after which it counts; ``solid`` where the
+    map or a scan shows something.
+    """
+
+    free_at: npt.NDArray[np.float64]
+    solid: npt.NDArray[np.bool_]
+    x0: float
+    y0: float
+    resolution: float
+    since: float
+
+
+class Lookout:
+    """Keeps a robot slow enough to stop for somebody who steps out, or fast enough to be past."""
+
+    def __init__(self, robot: Robot, config: NavigatorConfig) -> None:
+        self.limits, self.pace = robot.limits, config.hidden_speed
+        self.reaction = REACTION + config.latency
+        self.apart = robot.footprint.circumscribed + RADIUS + config.mover_margin
+
+    def speed(
+        self,
+        now: float,
+        v: float,
+        top: float,
+        path: Path,
+        s: float,
+        layer: ObstacleLayer,
+        chart: Chart,
+    ) -> float:
+        """The speed (m/s) to go at, near the present ``v`` and up to ``top``, ``s`` metres along a path.
+
+        From it the robot can stop before whoever comes straight out of hiding, or go on and be past;
+        if there is no such speed near ``v`` it is the lowest, but never less than ``SLOW``.
+        """
+        if self.pace == 0.0:
+            return top
+        view = View(
+            layer.free_at,
+            chart.blocked_under(layer),
+            *layer.origin,
+            layer.config.resolution,
+            now - UNSEEN,
+        )
+        points = path.resampled(s, s + AHEAD + FURTHER, SPACING)
+        onto = points[: round(AHEAD / SPACING) + 1 : round(EVERY / SPACING)]
+        found = lookout_kernels.lanes(np.ascontiguousarray(onto), view, RADIUS, COME, NEAR)
+        accel = self.limits.v_accel
+        speeds = np.maximum(np.linspace(v + accel, v - 0.5 * accel, 7), SLOW)  # within a second
+        return float(
+            lookout_kernels.careful(
+                found,
+                points,
+                SPACING,
+                speeds,
+                accel,
+                self.limits.v_brake,
+                top,
+                self.reaction,
+                self.pace,
+                self.apart,
+                LOOK,
+            )
+        )

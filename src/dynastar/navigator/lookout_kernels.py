@@ -1,0 +1,103 @@
+"""Kernels of the lookout: lanes that lead out of hiding, and speeds that leave a way out."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+SIDES = 16  # directions that somebody may come from
+PACE = 0.1  # m between the looks along a lane
+STEP = 0.2  # s between the looks at who is where
+
+
+@njit(cache=True)
+def across(view, x, y, ux, uy, radius):
+    """Whether somebody at (x, y) would be out of sight, and whether something stands there.
+
+    That is asked of the middle and of both sides, ``radius`` (m) across the direction (ux, uy).
+    ``view`` is a ``View``.
+    """
+    free_at, solid, x0, y0, resolution, since = view
+    unseen, shut = True, False
+    for off in (-radius, 0.0, radius):
+        r = int(math.floor((y + off * ux - y0) / resolution))
+        c = int(math.floor((x - off * uy - x0) / resolution))
+        if not (0 <= r < free_at.shape[0] and 0 <= c < free_at.shape[1]):
+            return True, True
+        unseen &= free_at[r, c] < since
+        shut |= solid[r, c]
+    return unseen, shut
+
+
+@njit(cache=True)
+def lanes(path, view, radius, length, farthest):
+    """Straight ways (k, 4) out of hiding onto the path's points (n, 2): x, y, and the direction.
+
+    Of each point and side it is the nearest place up to ``farthest`` metres away that hides
+    somebody of that ``radius``, who has come straight for ``length`` metres.
+    """
+    found = np.empty((SIDES * len(path), 4))
+    k = 0
+    for i in range(len(path)):
+        for side in range(SIDES):
+            angle = math.tau * side / SIDES
+            ux, uy = math.cos(angle), math.sin(angle)
+            d, behind = PACE, -1.0  # m from the path; how much of the lane is known to lie behind
+            x = y = 0.0
+            while d <= farthest or behind >= 0.0:
+                px, py = path[i, 0] + d * ux, path[i, 1] + d * uy
+                unseen, shut = across(view, px, py, ux, uy, radius)
+                if shut:
+                    break
+                if behind >= 0.0:
+                    behind += PACE
+                elif unseen and across(view, px - radius * ux, py - radius * uy, ux, uy, 0.0)[0]:
+                    x, y, behind = px, py, 0.0
+                if behind >= length:
+                    found[k] = x, y, -ux, -uy
+                    k += 1
+                    break
+                d += PACE
+    return found[:k]
+
+
+@njit(cache=True)
+def touches(lane, path, spacing, v, change, top, reaction, speed, apart, seconds):
+    """Whether who comes down a lane touches a robot that drives along a path from ``v`` (m/s).
+
+    After the ``reaction`` (s) that changes by ``change`` (m/s2), up to ``top`` or down to rest, which
+    ends it. They touch when their centres are less than ``apart`` (m) from each other.
+    """
+    x, y, ux, uy = lane
+    s = t = 0.0
+    while t < seconds:
+        t += STEP
+        if t > reaction:
+            v = min(v + change * STEP, top)
+            if v <= 0.0:
+                return False
+        s += v * STEP
+        i = int(s / spacing)
+        if i >= len(path):
+            return False
+        dx, dy = path[i, 0] - x - speed * t * ux, path[i, 1] - y - speed * t * uy
+        if dx * dx + dy * dy < apart * apart:
+            return True
+    return False
+
+
+@njit(cache=True)
+def careful(found, path, spacing, speeds, accel, brake, top, reaction, speed, apart, seconds):
+    """The first of ``speeds`` from which the robot could stop or go on, whoever comes; or the last."""
+    for v in speeds:
+        fine = True
+        for k in range(len(found)):
+            how = reaction, speed, apart, seconds
+            if touches(found[k], path, spacing, v, -brake, v, *how) and touches(
+                found[k], path, spacing, v, accel, max(top, v), *how
+            ):
+                fine = False
+                break
+        if fine:
+            return v
+    return speeds[-1]

@@ -1,0 +1,175 @@
+"""Who may step out of hiding, and how fast the robot goes for it."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from dynastar.grid import OccupancyGrid
+from dynastar.navigator.chart import Chart
+from dynastar.navigator.config import NavigatorConfig
+from dynastar.navigator.lookout import AHEAD, COME, NEAR, RADIUS, SLOW, Lookout, View
+from dynastar.navigator.lookout_kernels import SIDES, careful, lanes, touches
+from dynastar.obstacles import ObstacleLayer
+from dynastar.path import Path
+from dynastar.robot import ROBOTS
+
+N, CELL = 160, 0.05
+ROBOT = ROBOTS["paper"]
+NOW = 10.0
+PATH = np.column_stack([0.2 * np.arange(1, 16), np.full(15, 4.0)])  # along y = 4 in 8 x 8 m
+
+
+def view(hidden=(), solid=()):
+    """All seen free just now, but for rectangles (x0, y0, x1, y1)."""
+    free_at, solids = np.full((N, N), NOW), np.zeros((N, N), bool)
+    for x0, y0, x1, y1 in hidden:
+        free_at[round(y0 / CELL) : round(y1 / CELL), round(x0 / CELL) : round(x1 / CELL)] = -np.inf
+    for x0, y0, x1, y1 in solid:
+        solids[round(y0 / CELL) : round(y1 / CELL), round(x0 / CELL) : round(x1 / CELL)] = True
+    return View(free_at, solids, 0.0, 0.0, CELL, NOW - 0.35)
+
+
+def test_nobody_hides_where_all_is_seen_free():
+    assert len(lanes(PATH, view(), RADIUS, COME, NEAR)) == 0
+
+
+def test_somebody_may_come_out_of_a_side_street():
+    """It is 1 m wide, from y = 5, and hidden from y = 5.5."""
+    walls = [(0.0, 5.0, 1.5, 8.0), (2.5, 5.0, 8.0, 8.0)]
+    found = lanes(PATH, view([(1.5, 5.5, 2.5, 8.0)], walls), RADIUS, COME, NEAR)
+    assert len(found)
+    x, y, ux, uy = found.T
+    assert ((x > 1.5 + RADIUS - CELL) & (x < 2.5 - RADIUS + CELL)).all()
+    assert (y >= 5.5 + RADIUS - CELL).all()
+    assert y.min() < 5.5 + RADIUS + 0.15
+    assert (uy < -0.7).all()  # straight or almost, for the walls leave no more
+    assert np.hypot(ux, uy) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("hidden", "solid"),
+    [
+        pytest.param([(1.5, 5.5, 2.5, 6.5)], [(1.5, 6.5, 2.5, 8.0)], id="too short to come along"),
+        pytest.param([(1.8, 5.5, 2.3, 8.0)], [], id="too narrow to hide in"),
+        pytest.param([(1.5, 5.5, 2.5, 8.0)], [(0.0, 5.0, 8.0, 5.3)], id="behind a wall"),
+        pytest.param([(1.5, 7.3, 2.5, 8.0)], [], id="too far away"),
+    ],
+)
+def test_nobody_is_expected_from_where_nobody_can_come(hidden, solid):
+    walls = [(0.0, 5.0, 1.5, 8.0), (2.5, 5.0, 8.0, 8.0), *solid]
+    assert len(lanes(PATH, view(hidden, walls), RADIUS, COME, NEAR)) == 0
+
+
+@given(st.integers(0, 10**6))
+@settings(max_examples=30, deadline=None)
+def test_every_lane_leads_out_of_hiding_through_open_space_onto_the_path(seed):
+    rng = np.random.default_rng(seed)
+    boxes = rng.uniform(0.5, 7.5, (8, 2))
+    solid = [(x, y, x + 0.5, y + 0.5) for x, y in boxes if abs(y - 3.75) > 0.7]
+    here = view(rng.uniform(0.0, 8.0, (6, 4)), solid)
+    there = view([(x, y, x + 1.5, y + 1.5) for x, y in rng.uniform(0.0, 6.4, (6, 2))], solid)
+    for sight in (here, there):
+        found = lanes(PATH, sight, RADIUS, COME, NEAR)
+        assert len(found) <= SIDES * len(PATH)
+        for x, y, ux, uy in found:
+            back = np.arange(-COME + 0.05, NEAR, 0.1)
+            t = (4.0 - y) / uy if abs(uy) > 1e-6 else (PATH[:, 0] - x) / ux
+            t = np.atleast_1d(t)[np.atleast_1d(t) > 0.0].min()
+            assert t <= NEAR + 0.11
+            rows, columns = (
+                np.floor((start + back[back < t] * u) / CELL).astype(int)
+                for start, u in ((y, uy), (x, ux))
+            )
+            assert not sight.solid[rows, columns].any()
+            assert sight.free_at[int(y / CELL), int(x / CELL)] < sight.since
+
+
+def touches_slowly(lane, v, change, top, reaction, speed, apart, seconds, path):
+    """Both ways in steps of a millisecond; also by how much they miss each other."""
+    s, least = 0.0, math.inf
+    for t in np.arange(0.001, seconds, 0.001):
+        if t > reaction:
+            v = min(v + change * 0.001, top)
+        if v <= 0.0:
+            break
+        s += v * 0.001
+        if s >= 0.1 * (len(path) - 1):
+            break
+        x, y = lane[0] + speed * t * lane[2], lane[1] + speed * t * lane[3]
+        least = min(least, math.hypot(path[int(s / 0.1), 0] - x, path[int(s / 0.1), 1] - y))
+    return least - apart
+
+
+@given(
+    st.floats(0.1, 1.0),
+    st.sampled_from([-0.2, 0.2]),
+    st.floats(0.5, 3.0),
+    st.floats(0.5, 3.0),
+    st.floats(0.0, math.tau),
+)
+@settings(max_examples=60, deadline=None)
+def test_who_touches_whom_is_as_in_small_steps(v, change, onto, away, angle):
+    path = np.column_stack([0.1 * np.arange(60), np.zeros(60)])
+    ux, uy = math.cos(angle), math.sin(angle)
+    lane = np.array([onto - away * ux, -away * uy, ux, uy])
+    top = v if change < 0.0 else 0.8
+    exact = touches_slowly(lane, v, change, max(top, v), 0.4, 0.5, 0.75, 4.0, path)
+    found = touches(lane, path, 0.1, v, change, max(top, v), 0.4, 0.5, 0.75, 4.0)
+    assert found == (exact < 0.0) or abs(exact) < 0.2
+
+
+def test_the_robot_goes_so_slowly_that_it_could_stop_or_so_fast_that_it_is_past():
+    path = np.column_stack([0.1 * np.arange(60), np.zeros(60)])
+    crossing = np.array([[1.5, 1.6, 0.0, -1.0]])
+    speeds = np.arange(1.0, 0.3, -0.05)
+    rest = 0.1, 0.2, 0.8, 0.4, 0.5, 0.75, 4.0
+    chosen = careful(crossing, path, *rest[:1], speeds, 0.2, *rest[1:])
+    assert 0.3 < chosen < 0.6
+    assert careful(crossing[:0], path, *rest[:1], speeds, 0.2, *rest[1:]) == speeds[0]
+    far = crossing + [0.0, 6.0, 0.0, 0.0]
+    assert careful(far, path, *rest[:1], speeds, 0.2, *rest[1:]) == speeds[0]
+    near = np.array([[0.5, 0.8, 0.0, -1.0]])
+    assert careful(near, path, *rest[:1], speeds, 0.2, *rest[1:]) == speeds[-1]
+
+
+GRID = OccupancyGrid.from_text(
+    "\n".join(["....#.....", "....#.....", "....#....."] + ["." * 10] * 3)
+)
+
+
+def speed_at_a_corner(v, config=NavigatorConfig()):
+    """Along the lower half of a map whose upper half was never seen, right of a wall."""
+    layer, chart = ObstacleLayer(), Chart(GRID, config, 0.4, 0.4)
+    layer.follow(3.0, 1.5)
+    x0, y0 = layer.origin
+    a = layer.config.resolution
+    rows, columns = np.mgrid[: len(layer.free_at), : len(layer.free_at)]
+    seen = (y0 + (rows + 0.5) * a < 2.6) | (x0 + (columns + 0.5) * a < 4.0)
+    layer.free_at[seen] = NOW
+    layer.update(NOW)
+    path = Path(np.array([(3.5, 1.8), (9.5, 1.8)]))
+    return Lookout(ROBOT, config).speed(NOW, v, 1.0, path, 0.0, layer, chart)
+
+
+def test_a_robot_slows_down_where_the_map_leaves_room_to_come_out_of():
+    assert speed_at_a_corner(0.8) < 0.8
+    assert speed_at_a_corner(SLOW) >= SLOW
+    assert speed_at_a_corner(0.0) >= SLOW
+    nobody = replace_speed(0.0)
+    assert speed_at_a_corner(0.8, nobody) == 1.0
+
+
+def replace_speed(speed):
+    return NavigatorConfig()._replace(hidden_speed=speed)
+
+
+def test_a_longer_latency_is_a_longer_reaction():
+    late = Lookout(ROBOT, NavigatorConfig()._replace(latency=0.3))
+    assert late.reaction == pytest.approx(Lookout(ROBOT, NavigatorConfig()).reaction + 0.3)
+    big = replace(ROBOT, footprint=ROBOTS["jackal"].footprint)
+    assert Lookout(big, NavigatorConfig()).apart > late.apart
+    assert AHEAD > 0.0
