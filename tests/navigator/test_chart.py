@@ -190,5 +190,5 @@ def test_what_blocks_under_a_layer_is_the_maps_and_the_seen_and_all_off_the_map(
     for row, column in zip(rows.ravel(), columns.ravel(), strict=True):
         point = origin + a * (np.array([column, row]) + 0.5)
         cell = np.floor(grid.frame.points_to_grid(point[None]))[0].astype(int)
-        inside = (0 <= cell).all() and (cell < made.prior.shape).all()
+        inside = (cell >= 0).all() and (cell < made.prior.shape).all()
         assert under[row, column] == (not inside or made.blocked[tuple(cell)])
