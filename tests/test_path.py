@@ -105,3 +105,14 @@ def test_a_trajectory_knows_its_length():
     driven = Trajectory(np.array([0.0, 1.0]), poses, np.zeros((2, 2)))
     assert driven.length == pytest.approx(5.0)
     assert driven.path.points == pytest.approx(poses[:, :2])
+
+
+@given(st.floats(0.0, 5.0), st.floats(0.0, 20.0), st.floats(0.05, 1.0))
+def test_paced_points_are_equally_far_apart_along_the_path_up_to_its_end(start, span, spacing):
+    path = Path([(0.0, 0.0), (3.0, 0.0), (3.0, 4.0)])
+    points = path.paced(start, start + span, spacing)
+    stop = min(start + span, path.length)
+    for k, point in enumerate(points):
+        assert point == pytest.approx(path.at(min(start + k * spacing, stop)), abs=1e-9)
+    assert points[-1] == pytest.approx(path.at(stop), abs=1e-6)
+    assert len(points) <= max(2.0, span / spacing + 2.0)

@@ -64,7 +64,15 @@ class Path:
         """Points (m >= 2, 2) every ``spacing`` metres or less from ``start`` to ``stop`` metres along."""
         stop = min(max(stop, start), self.length)
         count = max(2, int(np.ceil((stop - start) / spacing)) + 1)
-        s = np.linspace(min(start, stop), stop, count)
+        return self._at(np.linspace(min(start, stop), stop, count))
+
+    def paced(self, start: float, stop: float, spacing: float) -> Floats:
+        """Points (m >= 2, 2) exactly ``spacing`` metres apart along, but for the last, at the end."""
+        stop = min(max(stop, start), self.length)
+        count = max(2, int(np.ceil((stop - start) / spacing - 1e-9)) + 1)
+        return self._at(np.minimum(start + spacing * np.arange(count), stop))
+
+    def _at(self, s: Floats) -> Floats:
         return np.column_stack(
             [np.interp(s, self.arc, self.points[:, 0]), np.interp(s, self.arc, self.points[:, 1])]
         )

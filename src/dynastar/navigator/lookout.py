@@ -22,6 +22,7 @@ NEAR = 3.0  # m from the path, beyond which there is time enough
 UNSEEN = 0.35  # s without having been seen free, and somebody may be there
 REACTION = 0.4  # s until they are known to move
 LOOK = 4.0  # s of driving on
+CANDIDATES = 7  # speeds
 SLOW = 0.3  # m/s, slower than which the robot goes for nobody that it does not see
 
 
@@ -72,11 +73,12 @@ class Lookout:
             layer.config.resolution,
             now - UNSEEN,
         )
-        points = path.resampled(s, s + AHEAD + FURTHER, SPACING)
+        points = path.paced(s, s + AHEAD + FURTHER, SPACING)
         onto = points[: round(AHEAD / SPACING) + 1 : round(EVERY / SPACING)]
         found = lookout_kernels.lanes(np.ascontiguousarray(onto), view, RADIUS, COME, NEAR)
         accel = self.limits.v_accel
-        speeds = np.maximum(np.linspace(v + accel, v - 0.5 * accel, 7), SLOW)  # within a second
+        high, low = min(v + accel, top), max(v - 0.5 * accel, min(SLOW, top))  # within a second
+        speeds = np.linspace(max(high, low), low, CANDIDATES)
         return float(
             lookout_kernels.careful(
                 found,

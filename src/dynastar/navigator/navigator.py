@@ -232,7 +232,7 @@ class Navigator:
             self.recovery.progressed(now)
         wish = Wish(
             target,
-            self._path.resampled(
+            self._path.paced(
                 self._s, self._s + self.robot.limits.v_max * config.dwa.horizon, PATH_SPACING
             ),
             PATH_SPACING,

@@ -9,8 +9,8 @@ from dynastar.path import Path
 from dynastar.robot import Limits
 
 SPACING = 0.1  # m between the points of the profile
-BEND = 0.5  # m either side of a point over which the path's change of heading counts as one bend
-SWING = 0.15  # m that the robot may swing wide of the path or cut it in a bend
+BEND = 0.4  # m either side of a point over which the path's change of heading counts as one bend
+SWING = 0.2  # m that the robot may swing wide of the path or cut it in a bend
 GENTLE = 0.7  # share of the braking that slowing down for what is ahead may use
 SLOWEST = 0.1  # m/s, so that nothing ahead but a lower limit stops the robot short of it
 
