@@ -136,6 +136,16 @@ def test_the_robot_goes_so_slowly_that_it_could_stop_or_so_fast_that_it_is_past(
     assert careful(near, path, *rest[:1], speeds, 0.2, *rest[1:]) == speeds[-1]
 
 
+def test_who_would_be_at_the_robots_back_already_does_not_hold_it_up():
+    path = np.column_stack([0.1 * np.arange(60), np.zeros(60)])
+    rest = 0.1, 0.2, 0.8, 0.4, 0.5, 0.75, 4.0
+    speeds = np.arange(0.8, 0.3, -0.05)
+    behind = np.array([[-0.7, 0.0, 1.0, 0.0]])
+    assert careful(behind, path, *rest[:1], speeds, 0.2, *rest[1:]) == speeds[0]
+    ahead = np.array([[0.8, 0.0, -1.0, 0.0]])
+    assert careful(ahead, path, *rest[:1], speeds, 0.2, *rest[1:]) == speeds[-1]
+
+
 GRID = OccupancyGrid.from_text(
     "\n".join(["....#.....", "....#.....", "....#....."] + ["." * 10] * 3)
 )

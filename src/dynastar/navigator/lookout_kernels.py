@@ -88,10 +88,16 @@ def touches(lane, path, spacing, v, change, top, reaction, speed, apart, seconds
 
 @njit(cache=True)
 def careful(found, path, spacing, speeds, accel, brake, top, reaction, speed, apart, seconds):
-    """The first of ``speeds`` from which the robot could stop or go on, whoever comes; or the last."""
+    """The first of ``speeds`` from which the robot could stop or go on, whoever comes; or the last.
+
+    Who would be nearer than ``apart`` (m) already, behind a robot that does not see there, say, is so
+    at any speed and is left out.
+    """
     for v in speeds:
         fine = True
         for k in range(len(found)):
+            if math.hypot(found[k, 0] - path[0, 0], found[k, 1] - path[0, 1]) < apart:
+                continue
             how = reaction, speed, apart, seconds
             if touches(found[k], path, spacing, v, -brake, v, *how) and touches(
                 found[k], path, spacing, v, accel, max(top, v), *how
