@@ -1,5 +1,7 @@
 """The frame of the suites, on a suite made up here."""
 
+import subprocess
+import sys
 from collections.abc import Iterator
 from itertools import count
 from pathlib import Path
@@ -134,3 +136,26 @@ def test_the_data_are_in_the_folder_or_one_below(
         data_folder(Options(data=tmp_path / "nowhere"), "set", "index.csv")
     monkeypatch.setenv("DYNASTAR_DATA", str(tmp_path))
     assert data_folder(Options(), "set", "index.csv") == tmp_path / "set"
+
+
+POOL = """\
+import multiprocessing, os, time
+from concurrent.futures import ProcessPoolExecutor
+from dynastar.bench.runner import _settle
+
+if __name__ == "__main__":
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(1, context, initializer=_settle)
+    print(pool.submit(os.getpid).result(), flush=True)
+    pool.submit(time.sleep, 60.0).result()
+"""
+
+
+def test_workers_end_with_a_parent_that_is_killed(tmp_path):
+    script = tmp_path / "pool.py"
+    script.write_text(POOL)
+    with subprocess.Popen([sys.executable, script], stdout=subprocess.PIPE, text=True) as parent:
+        assert parent.stdout is not None
+        assert int(parent.stdout.readline()) != parent.pid
+        parent.kill()
+        parent.communicate(timeout=20.0)  # ends when the last who holds the pipe, the worker, has

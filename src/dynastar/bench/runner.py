@@ -10,6 +10,7 @@ import os
 import signal
 import statistics
 import sys
+import threading
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
@@ -213,9 +214,17 @@ def _spread(
 
 
 def _settle() -> None:
-    """A worker leaves Ctrl-C to its parent, and the other cores to the other workers."""
+    """A worker leaves Ctrl-C to its parent and the other cores to the others, and ends with its parent."""
     import cv2
 
+    threading.Thread(target=_end_with_parent, daemon=True).start()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     cv2.setNumThreads(1)
     sys.stdout = sys.stderr
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()  # a parent that is killed cannot end its workers
+        os._exit(1)
