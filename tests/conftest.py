@@ -13,6 +13,8 @@ def data_dir() -> Path:
     """The public data sets: $DYNASTAR_DATA, else ../shared/data beside the clone, else skip."""
     named = os.environ.get("DYNASTAR_DATA")
     folder = Path(named) if named else ROOT.parent / "shared" / "data"
+    if named and not folder.is_dir():
+        pytest.fail(f"DYNASTAR_DATA is {named}, which is no folder")
     if not folder.is_dir():
         pytest.skip(
             f"the public data sets are not in {folder}: set DYNASTAR_DATA to have them read"

@@ -9,6 +9,7 @@ from dynastar.navigator import lookout_kernels
 from dynastar.navigator.chart import Chart
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.obstacles import ObstacleLayer
+from dynastar.obstacles.tracker_kernels import HALF_SEEN, UNSEEN
 from dynastar.path import Path
 from dynastar.robot import Robot
 
@@ -16,10 +17,9 @@ AHEAD = 3.0  # m of the path onto which somebody may come
 FURTHER = 3.0  # m of the path that the robot may go on
 EVERY = 0.2  # m between the points that they may come onto
 SPACING = 0.1  # m between the path's points
-RADIUS = 0.3  # m, of somebody
+RADIUS = HALF_SEEN  # m, of somebody
 COME = 1.2  # m that they have come straight to where they are hidden
 NEAR = 3.0  # m from the path, beyond which there is time enough
-UNSEEN = 0.35  # s without having been seen free, and somebody may be there
 REACTION = 0.4  # s until they are known to move
 LOOK = 4.0  # s of driving on
 CANDIDATES = 7  # speeds

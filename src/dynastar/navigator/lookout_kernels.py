@@ -5,6 +5,8 @@ import math
 import numpy as np
 from numba import njit
 
+from dynastar.obstacles.tracker_kernels import hidden
+
 SIDES = 16  # directions that somebody may come from
 PACE = 0.1  # m between the looks along a lane
 STEP = 0.2  # s between the looks at who is where
@@ -36,6 +38,7 @@ def lanes(path, view, radius, length, farthest):
     Of each point and side it is the nearest place up to ``farthest`` metres away that hides
     somebody of that ``radius``, who has come straight for ``length`` metres.
     """
+    where = (view.free_at, view.x0, view.y0, view.resolution, view.since)
     found = np.empty((SIDES * len(path), 4))
     k = 0
     for i in range(len(path)):
@@ -51,7 +54,7 @@ def lanes(path, view, radius, length, farthest):
                     break
                 if behind >= 0.0:
                     behind += PACE
-                elif unseen and across(view, px - radius * ux, py - radius * uy, ux, uy, 0.0)[0]:
+                elif unseen and hidden(px - radius * ux, py - radius * uy, *where):
                     x, y, behind = px, py, 0.0
                 if behind >= length:
                     found[k] = x, y, -ux, -uy

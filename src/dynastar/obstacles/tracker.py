@@ -111,7 +111,12 @@ class Tracker:
         taken = kernels.associate(self._tracks, found, config.gate)
         kernels.correct(self._tracks, found, config.error, now)
         kernels.lurk(
-            self._tracks, dt, layer.free_at, *layer.origin, layer.config.resolution, now - 0.35
+            self._tracks,
+            dt,
+            layer.free_at,
+            *layer.origin,
+            layer.config.resolution,
+            now - kernels.UNSEEN,
         )
         confirmed = kernels.judge(
             self._tracks,

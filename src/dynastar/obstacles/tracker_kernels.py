@@ -16,6 +16,7 @@ COLUMNS = 17
 LOST = 0.5  # s after which a mover that is seen again has its velocity measured anew
 HIDING = 2.0  # m ahead of where it was last that a mover may be hidden
 BEHIND = 1.5  # cells behind a point to where its space has to have been seen free before
+UNSEEN = 0.35  # s without having been seen free, and something may be there
 HALF_SEEN = 0.3  # m, the radius of something that one end is hidden of, unless more is seen
 HIDDEN = (1.0, 1.5, 4.0)  # so much less sure is a centre with so many ends hidden
 TOP_KEPT = 0.97  # of a mover's top speed from scan to scan
@@ -32,7 +33,7 @@ def disc_at_end(points, start, stop, hidden, radius, half_step, sensor_x, sensor
     n = len(points)
     end = ((stop - 1) if hidden > 0 else start) % n
     end_x, end_y = points[end, 0] - sensor_x, points[end, 1] - sensor_y
-    far = math.hypot(end_x, end_y)
+    far = max(math.hypot(end_x, end_y), 1e-9)
     angle = math.atan2(end_y, end_x) + hidden * (half_step - math.asin(min(1.0, radius / far)))
     ux, uy = math.cos(angle), math.sin(angle)
     depth = 0.0
