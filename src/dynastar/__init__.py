@@ -1,13 +1,6 @@
 """dynastar (dynamic window + A*): navigation for differential-drive robots."""
 
-from importlib import import_module
-from typing import Any
-
-from dynastar import _kernel_cache
-
 __version__ = "0.1.0"
-
-_kernel_cache.use()
 
 _WHERE = {
     "Limits": "robot",
@@ -36,8 +29,10 @@ _WHERE = {
 __all__ = ["__version__", *_WHERE]
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
     """Imports a public name when it is first asked for, so that ``import dynastar`` costs nothing."""
+    from importlib import import_module
+
     if name not in _WHERE:
         raise AttributeError(f"module 'dynastar' has no attribute '{name}'")
     return getattr(import_module(f"dynastar.{_WHERE[name]}"), name)

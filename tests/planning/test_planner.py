@@ -3,7 +3,7 @@ import pytest
 
 from dynastar.errors import ConfigError, GoalOccupied, NoPath, OutOfMap, StartOccupied
 from dynastar.grid import GridFrame, OccupancyGrid
-from dynastar.planning import PLANNERS, GridPlanner, PlannerConfig, plan
+from dynastar.planning import ALGORITHMS, GridPlanner, PlannerConfig, plan
 from naive import clearance
 
 ROOM = """
@@ -24,7 +24,7 @@ def room(resolution=0.1):
     return OccupancyGrid.from_text(ROOM, resolution)
 
 
-@pytest.mark.parametrize("planner", list(PLANNERS))
+@pytest.mark.parametrize("planner", list(ALGORITHMS))
 @pytest.mark.parametrize("radius", [0.0, 0.05, 0.08])
 def test_a_plan_goes_from_start_to_goal(planner, radius):
     start, goal = (0.33, 0.21), (1.72, 0.18)

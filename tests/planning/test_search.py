@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from dynastar.errors import ConfigError, GoalOccupied, MapError, NoPath, OutOfMap, StartOccupied
 from dynastar.planning import PLANNERS, HeuristicConfig, SearchGrid
+from dynastar.planning.labels import MAX_STAMP
 from naive import improved, shortest
 
 CONFIGS = [
@@ -45,11 +46,24 @@ def assert_legal(occupied, cells, start, goal):
         assert not occupied[r, c + dc]
 
 
-@pytest.mark.parametrize("algorithm", ["dijkstra", "astar"])
+def structured_world(seed):
+    """A mask of blocks wide and long enough to span words of bits, and two free cells."""
+    rng = np.random.default_rng(seed)
+    coarse = rng.random(rng.integers(1, 24, 2)) < rng.choice([0.1, 0.3, 0.5])
+    block = rng.integers(1, 12, 2)
+    occupied = np.kron(coarse, np.ones(block, bool))[: rng.integers(2, 200), : rng.integers(2, 200)]
+    occupied[0, 0] = occupied[-1, -1] = False
+    free = np.argwhere(~occupied)
+    start, goal = free[rng.integers(0, len(free), 2)]
+    return occupied, tuple(map(int, start)), tuple(map(int, goal))
+
+
+@pytest.mark.parametrize("algorithm", ["dijkstra", "astar", "jump", "auto"])
+@pytest.mark.parametrize("world", [random_world, structured_world])
 @given(seed=st.integers(0, 10**9))
-@settings(max_examples=150, deadline=None)
-def test_the_shortest_way_is_found(algorithm, seed):
-    occupied, start, goal = random_world(seed)
+@settings(max_examples=75, deadline=None)
+def test_the_shortest_way_is_found(algorithm, world, seed):
+    occupied, start, goal = world(seed)
     lengths = shortest(occupied, start)
     grid = SearchGrid(occupied)
     if goal not in lengths:
@@ -63,7 +77,48 @@ def test_the_shortest_way_is_found(algorithm, seed):
     assert euclidean.cost == pytest.approx(lengths[goal], rel=1e-6)
 
 
-@pytest.mark.parametrize("algorithm", list(PLANNERS))
+def test_an_exact_search_closes_what_it_must_and_no_more():
+    for seed in range(40):
+        occupied, start, goal = random_world(seed, size=30)
+        lengths = shortest(occupied, start)
+        if goal not in lengths:
+            continue
+        rest = shortest(occupied, goal)
+        found = SearchGrid(occupied).search(start, goal, "astar", explored=True)
+        closed = {tuple(map(int, cell)) for cell in found.explored}
+        for (r, c), g in lengths.items():
+            rows, columns = abs(r - goal[0]), abs(c - goal[1])
+            f = g + max(rows, columns) + (math.sqrt(2.0) - 1.0) * min(rows, columns)
+            assert ((r, c) in closed) if f < lengths[goal] - 1e-3 else True
+            assert ((r, c) not in closed) if f > lengths[goal] + 1e-3 else True
+        assert len(closed) == found.expanded
+        assert rest[start] == pytest.approx(found.cost)
+
+
+def test_jumping_expands_few_cells_of_an_open_map():
+    grid = SearchGrid(np.zeros((300, 500), bool))
+    found = grid.search((10, 3), (290, 490), "jump")
+    assert found.cost == pytest.approx(487 - 280 + 280 * math.sqrt(2.0))
+    assert found.expanded < 5
+
+
+def test_auto_jumps_on_open_maps_and_not_on_random_ones():
+    rng = np.random.default_rng(0)
+    rooms = np.zeros((200, 200), bool)
+    rooms[::40] = rooms[:, ::40] = True
+    rooms[20::40, ::40] = rooms[::40, 20::40] = False
+    noise = rng.random((200, 200)) < 0.3
+    noise[1, 1] = noise[2, 2] = False
+    for occupied, kernel in ((rooms, "jump"), (noise, "astar")):
+        grid = SearchGrid(occupied)
+        auto = grid.search((1, 1), (2, 2), "auto", explored=True)
+        same = grid.search((1, 1), (2, 2), kernel, explored=True)
+        assert auto.expanded == same.expanded
+        assert (auto.explored == same.explored).all()
+        assert grid._prefers_jumps() == (kernel == "jump")
+
+
+@pytest.mark.parametrize("algorithm", ["weighted", "improved"])
 @pytest.mark.parametrize("config", CONFIGS)
 def test_every_reading_of_eqs_2_and_3_is_what_it_says(algorithm, config):
     for seed in range(25):
@@ -94,7 +149,7 @@ def test_a_grid_is_searched_again_and_again():
 
 def test_the_stamp_runs_over():
     grid = SearchGrid(np.zeros((3, 3), dtype=bool))
-    grid._stamp = 2**22 - 3
+    grid._stamp = MAX_STAMP - 2
     for _ in range(5):
         assert grid.search((0, 0), (2, 2)).cost == pytest.approx(math.sqrt(8))
 
@@ -102,8 +157,9 @@ def test_the_stamp_runs_over():
 @given(st.integers(0, 10**9))
 @settings(max_examples=50, deadline=None)
 def test_an_updated_grid_is_as_if_made_anew(seed):
-    occupied, start, goal = random_world(seed)
+    occupied, start, goal = random_world(seed, size=80)
     grid = SearchGrid(occupied)
+    assert grid.lines
     assert grid.sums[-1, -1] == occupied.sum()
     rng = np.random.default_rng(seed)
     rows, columns = occupied.shape
@@ -114,7 +170,9 @@ def test_an_updated_grid_is_as_if_made_anew(seed):
     grid.update(row, column, patch < 0.3)
     anew = SearchGrid(changed)
     assert (grid.occupied == changed).all()
-    assert (grid._moves == anew._moves).all()
+    assert (grid._near == anew._near).all()
+    assert (grid.lines[0] == anew.lines[0]).all()
+    assert (grid.lines[1] == anew.lines[1]).all()
     assert (grid.sums == anew.sums).all()
     assert (grid.sums[1:, 1:] == changed.cumsum(0).cumsum(1)).all()
     if not changed[start] and not changed[goal]:

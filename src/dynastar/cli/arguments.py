@@ -3,10 +3,13 @@
 import argparse
 import math
 import re
-from pathlib import Path
-from typing import NoReturn
 
 from dynastar import __version__
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:  # neither is imported for --help
+    from pathlib import Path
+    from typing import NoReturn
 
 PLAN_EXAMPLES = """\
 examples:
@@ -30,6 +33,14 @@ examples:
   dynastar bench paper --missions 500 --workers 2 --json-out paper.json
   dynastar bench paper --select 17              # mission 17 alone, as often as you like"""
 
+WARMUP_EXAMPLES = """\
+examples:
+  dynastar warmup
+  dynastar warmup --clear
+
+The kernels lie in ~/.cache/dynastar (or $XDG_CACHE_HOME/dynastar), a folder for each version of
+their sources; $NUMBA_CACHE_DIR, if it is set, is where they lie instead and is not cleared."""
+
 EXAMPLES = """\
 examples:
   dynastar plan office.yaml --start 2 2 --goal 38 23 --radius 0.25
@@ -47,9 +58,16 @@ class OneLineParser(argparse.ArgumentParser):
         super().__init__(**settings)  # type: ignore[arg-type]
         self._negative_number_matcher = re.compile(r"^-(\d|\.\d|inf|nan)", re.IGNORECASE)
 
-    def error(self, message: str) -> NoReturn:
+    def error(self, message: str) -> "NoReturn":
         """Exits with status 2 and ``message``."""
         self.exit(2, f"{self.prog}: {' '.join(message.split())} (see {self.prog} --help)\n")
+
+
+def path(text: str) -> "Path":
+    """A file or folder."""
+    from pathlib import Path
+
+    return Path(text)
 
 
 def number(text: str) -> float:
@@ -97,10 +115,14 @@ def build_parser() -> argparse.ArgumentParser:
     _add_plan(commands)
     _add_run(commands)
     _add_bench(commands)
-    commands.add_parser(
+    warmup = commands.add_parser(
         "warmup",
         help="compile everything now, so that the first mission does not wait",
-        description="Compiles the kernels of planning, sensing and driving into numba's cache.",
+        description="Compiles the kernels of planning, sensing and driving into the cache.",
+        epilog=WARMUP_EXAMPLES,
+    )
+    warmup.add_argument(
+        "--clear", action="store_true", help="delete the compiled kernels of all versions instead"
     )
     return parser
 
@@ -112,14 +134,14 @@ def _add_plan(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
         description="Finds a smoothed path on a map that keeps a disc clear of obstacles.",
         epilog=PLAN_EXAMPLES,
     )
-    plan.add_argument("map", metavar="MAP", type=Path, help=".yaml (ROS), .map, .npy or .txt")
+    plan.add_argument("map", metavar="MAP", type=path, help=".yaml (ROS), .map, .npy or .txt")
     plan.add_argument("--start", nargs=2, type=number, required=True, metavar=("X", "Y"))
     plan.add_argument("--goal", nargs=2, type=number, required=True, metavar=("X", "Y"))
     plan.add_argument(
         "--planner",
         default="improved",
         metavar="NAME",
-        help="dijkstra, astar, weighted or improved (the default)",
+        help="dijkstra, astar, jump, auto, weighted or improved (the default)",
     )
     plan.add_argument(
         "--radius", type=distance, default=0.0, metavar="R", help="of the robot, m (default 0)"
@@ -131,7 +153,7 @@ def _add_plan(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
         help="what unknown cells are taken for (default blocked)",
     )
     plan.add_argument("--json", action="store_true", help="JSON on stdout instead of a table")
-    plan.add_argument("--out", type=Path, metavar="PNG", help="draw the plan into this picture")
+    plan.add_argument("--out", type=path, metavar="PNG", help="draw the plan into this picture")
 
 
 def _add_run(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
@@ -142,8 +164,8 @@ def _add_run(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
         "Exit status 0 only for an arrival without contact.",
         epilog=RUN_EXAMPLES,
     )
-    run.add_argument("scenario", metavar="SCENARIO.toml", type=Path)
-    run.add_argument("--out", type=Path, metavar="DIR", help="default out/<scenario's name>")
+    run.add_argument("scenario", metavar="SCENARIO.toml", type=path)
+    run.add_argument("--out", type=path, metavar="DIR", help="default out/<scenario's name>")
     run.add_argument("--seed", type=seed, metavar="N", help="instead of the scenario's")
     run.add_argument("--preset", choices=("default", "paper"), help="instead of the scenario's")
     run.add_argument("--json", action="store_true", help="JSON on stdout instead of a table")
@@ -160,7 +182,7 @@ def _add_bench(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
     bench.add_argument("suite", metavar="SUITE", help="movingai or paper")
     bench.add_argument(
         "--data",
-        type=Path,
+        type=path,
         metavar="DIR",
         help="the suite's folder or the one above it (default $DYNASTAR_DATA)",
     )

@@ -13,7 +13,7 @@ from dynastar.io.movingai import file_to_world, points_to_file
 
 def execute(arguments: argparse.Namespace) -> int:
     """Plans twice, so that ``time_ms`` is warm, and prints the second."""
-    choose(arguments.planner, planning.PLANNERS, "planner")
+    choose(arguments.planner, planning.ALGORITHMS, "planner")
     grid = io.load_map(arguments.map)
     in_file = arguments.map.suffix.lower() == ".map"
     start, goal = tuple(arguments.start), tuple(arguments.goal)

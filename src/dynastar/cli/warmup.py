@@ -4,19 +4,21 @@ import argparse
 import sys
 import time
 
-from dynastar import planning, simulation
+from dynastar import compiled, planning, simulation
 from dynastar.grid import OccupancyGrid
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Plans with every planner, and drives a disc and a polygon past a box and a walker."""
+    if arguments.clear:
+        print(f"{compiled.clear() / 1e6:.0f} MB deleted from {compiled.caches()}", file=sys.stderr)
+        return 0
     from tqdm import tqdm
 
-    del arguments
     began = time.perf_counter()
     grid = OccupancyGrid.from_text(["....", ".##.", "...."])
-    for step in tqdm([*planning.PLANNERS, "driving"], "compiling", file=sys.stderr):
-        if step in planning.PLANNERS:
+    for step in tqdm([*planning.ALGORITHMS, "driving"], "compiling", file=sys.stderr):
+        if step in planning.ALGORITHMS:
             planning.plan(grid, (0.5, 0.5), (3.5, 2.5), planner=step, radius=0.25, explored=True)
         else:
             simulation.warm_up()

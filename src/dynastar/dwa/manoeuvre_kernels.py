@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
-from numba import njit
 
+from dynastar.compiled import njit
 from dynastar.dwa.clearance_kernels import footprint_clearance
 from dynastar.dwa.stop_kernels import ADMISSIBLE, RUN_OVER, arc, certify, slew
 

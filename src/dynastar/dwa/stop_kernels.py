@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
-from numba import njit
 
+from dynastar.compiled import njit
 from dynastar.dwa.clearance_kernels import footprint_clearance
 
 ADMISSIBLE, NO_STOP, CONTACT, MOVER, RUN_OVER = 0, 1, 2, 3, 4

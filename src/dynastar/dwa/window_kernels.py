@@ -1,7 +1,6 @@
 """The window (Eqs. 5-7) and its evaluation in one pass over the samples."""
 
-from numba import njit
-
+from dynastar.compiled import njit
 from dynastar.dwa.rollout_kernels import normalise_and_choose, roll_out
 from dynastar.dwa.stop_kernels import (
     ADMISSIBLE,

@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
-from numba import njit
 
+from dynastar.compiled import njit
 from dynastar.obstacles.tracker_kernels import hidden
 
 SIDES = 16  # directions that somebody may come from

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from dynastar.compiled import njit
 from dynastar.dwa import Surroundings
 from dynastar.dwa.clearance_kernels import centre_clearance
 from dynastar.geometry import wrap_angle

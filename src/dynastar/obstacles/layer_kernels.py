@@ -3,7 +3,8 @@
 import math
 
 import numpy as np
-from numba import njit
+
+from dynastar.compiled import njit
 
 NEVER = -1e18
 

@@ -3,7 +3,8 @@
 import math
 
 import numpy as np
-from numba import njit
+
+from dynastar.compiled import njit
 
 # Columns of a cluster: centre, radius, share of points in space seen free before, first and last
 # point, and how many of its ends are hidden by something nearer or lie at what the map shows.

@@ -2,11 +2,12 @@
 
 from dynastar.planning.heuristic import PLANNERS, HeuristicConfig
 from dynastar.planning.planner import GridPlanner, Plan, PlannerConfig, plan, warm_up
-from dynastar.planning.search import SearchGrid, SearchResult
+from dynastar.planning.search import ALGORITHMS, SearchGrid, SearchResult
 from dynastar.planning.segments import segment_clear
 from dynastar.planning.smoothing import smooth
 
 __all__ = [
+    "ALGORITHMS",
     "PLANNERS",
     "GridPlanner",
     "HeuristicConfig",

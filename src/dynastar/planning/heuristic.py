@@ -5,7 +5,8 @@ from collections.abc import Callable
 from typing import Annotated, Literal, NamedTuple
 
 from dynastar.config import Field
-from dynastar.planning.search_kernel import STRAIGHT, Terms
+from dynastar.planning.heap_kernel import Terms
+from dynastar.planning.labels import STRAIGHT
 
 
 class HeuristicConfig(NamedTuple):

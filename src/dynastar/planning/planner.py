@@ -15,8 +15,15 @@ from dynastar.errors import ConfigError, GoalOccupied, NoPath, OutOfMap, StartOc
 from dynastar.grid import OccupancyGrid, Unknown
 from dynastar.path import Path
 from dynastar.planning.escape import reach_of_escape, ways_out
-from dynastar.planning.heuristic import PLANNERS, HeuristicConfig
-from dynastar.planning.search import Cell, Cells, SearchGrid, SearchResult, check_window
+from dynastar.planning.heuristic import HeuristicConfig
+from dynastar.planning.search import (
+    ALGORITHMS,
+    Cell,
+    Cells,
+    SearchGrid,
+    SearchResult,
+    check_window,
+)
 from dynastar.planning.segments import first_contact, is_clear, mask_bytes
 from dynastar.planning.smoothing import smooth
 
@@ -27,7 +34,7 @@ Point = tuple[float, float]
 class PlannerConfig(NamedTuple):
     """How a path is found and what is made of it."""
 
-    planner: Annotated[str, Field("dijkstra, astar, weighted or improved")] = "improved"
+    planner: Annotated[str, Field("dijkstra, astar, jump, auto, weighted or improved")] = "improved"
     heuristic: HeuristicConfig = HeuristicConfig()
     smoothing: Annotated[bool, Field("whether the path is pulled taut")] = True
     rounding: Annotated[float, Field("where a corner's rounding may begin", "m", 0.0, 10.0)] = 0.5
@@ -73,7 +80,7 @@ class GridPlanner:
     ) -> None:
         if not (math.isfinite(radius) and radius >= 0.0):
             raise ConfigError(f"a planning radius is {radius}: expected 0 m or more")
-        choose(config.planner, PLANNERS, "planner")
+        choose(config.planner, ALGORITHMS, "planner")
         self.grid = grid
         self.radius = float(radius)
         self.config = config
@@ -91,7 +98,7 @@ class GridPlanner:
 
     @property
     def inflated(self) -> Mask:
-        """Where the disc's centre may not be, [rows, columns], read-only."""
+        """Where the disc's centre may not be, [rows, columns]; a copy."""
         return self._search.occupied
 
     def mark(self, row0: int, col0: int, patch_blocked: npt.ArrayLike) -> None:
@@ -215,9 +222,8 @@ class GridPlanner:
         row, column = int(point[0]), int(point[1])
         near = [(row + i, column + j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
         near.sort(key=lambda cell: math.dist(point, (cell[0] + 0.5, cell[1] + 0.5)))
-        inflated = self.inflated
         for r, c in near:
-            if not (0 <= r < self.grid.rows and 0 <= c < self.grid.columns) or inflated[r, c]:
+            if not self._search.is_free((r, c)):
                 continue
             if is_clear(self._blocked, *point, r + 0.5, c + 0.5, self._radius_cells):
                 return r, c

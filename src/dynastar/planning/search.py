@@ -7,11 +7,16 @@ import numpy.typing as npt
 
 from dynastar.config import choose
 from dynastar.errors import GoalOccupied, MapError, NoPath, OutOfMap, StartOccupied
-from dynastar.planning import search_kernel as kernel
+from dynastar.planning import bucket_kernel, heap_kernel, jump_kernel, labels
 from dynastar.planning.heuristic import PLANNERS, HeuristicConfig, kernel_terms
+from dynastar.planning.neighbours import CANONICAL, TURNS, count_turns, find_near
 
 Cells = npt.NDArray[np.int32]
 Cell = tuple[int, int]
+
+ALGORITHMS = {name: name for name in (*PLANNERS, "jump", "auto")}
+SAMPLED = 1 << 14  # cells that are looked at to tell what the map is like
+JUMP_BELOW = 0.3  # turns round corners for a free cell, up to which jumping is the faster
 
 
 class SearchResult(NamedTuple):
@@ -39,52 +44,87 @@ class SearchGrid:
             raise MapError(f"a search grid has shape {mask.shape}: expected (rows, columns) > 0")
         self.rows, self.columns = mask.shape
         self._width = self.columns + 2
-        if (self.rows + 2) * self._width > kernel.MAX_NODES:
+        if (self.rows + 2) * self._width > labels.MAX_NODES:
             raise MapError(
                 f"a search grid has {self.rows} x {self.columns} cells: "
-                f"at most {kernel.MAX_NODES} can be searched"
+                f"at most {labels.MAX_NODES} can be searched"
             )
-        self._blocked = np.pad(mask, 1, constant_values=True).view(np.uint8)
-        self._moves = np.zeros_like(self._blocked)
-        kernel.find_moves(self._blocked, self._moves, 1, 1, self.rows + 1, self.columns + 1)
+        self._near = np.zeros((self.rows + 2, self._width), np.uint8)
+        ringed = np.ones(self._near.shape, np.uint8)
+        ringed[1:-1, 1:-1] = mask
+        find_near(ringed, self._near[1:-1, 1:-1])
         self._sums: npt.NDArray[np.int32] | None = None
-        self._state = np.zeros(self._blocked.size, np.int64)
+        self._lines: tuple[jump_kernel.Words, jump_kernel.Words] | None = None
+        self._jumps: bool | None = None
+        self._labels = np.zeros(self._near.size, np.int64)
         self._stamp = 0
-        self._heap = np.empty(1024, np.int64)
+        self._heads = np.empty(bucket_kernel.BUCKETS, np.int32)
+        self._pool = np.empty(1024, np.int64)  # or the heap's keys
         self._nodes = np.empty(1024, np.int32)
 
     @property
     def occupied(self) -> npt.NDArray[np.bool_]:
-        """The mask that is searched, [rows, columns], read-only."""
-        mask = self._blocked[1:-1, 1:-1].view(np.bool_)
-        mask.flags.writeable = False
-        return mask
+        """The mask that is searched, [rows, columns]; a copy."""
+        return self._near[1:-1, 1:-1] == 0
+
+    def is_free(self, cell: Cell) -> bool:
+        """Whether a cell (row, column) lies on the grid and is free."""
+        row, column = cell
+        inside = 0 <= row < self.rows and 0 <= column < self.columns
+        return inside and bool(self._near[row + 1, column + 1])
 
     @property
     def sums(self) -> npt.NDArray[np.int32]:
         """Summed-area table [rows + 1, columns + 1]: occupied in the first i rows, j columns."""
         if self._sums is None:
             sums = np.zeros((self.rows + 1, self.columns + 1), np.int32)
-            np.cumsum(self._blocked[1:-1, 1:-1], axis=0, dtype=np.int32, out=sums[1:, 1:])
-            np.cumsum(sums[1:, 1:], axis=1, out=sums[1:, 1:])
+            np.cumsum(self.occupied, axis=1, dtype=np.int32, out=sums[1:, 1:])
+            np.cumsum(sums[1:, 1:], axis=0, out=sums[1:, 1:])
             self._sums = sums
         return self._sums
+
+    @property
+    def lines(self) -> tuple[jump_kernel.Words, jump_kernel.Words]:
+        """The blocked cells as bits, row by row and column by column, for jumping."""
+        if self._lines is None:
+            rows, columns = self._near.shape
+            self._lines = (
+                np.empty((rows, (columns + 63) // 64), np.uint64),
+                np.empty((columns, (rows + 63) // 64), np.uint64),
+            )
+            self._pack(0, 0, rows, columns)
+        return self._lines
 
     def update(self, row0: int, col0: int, patch: npt.ArrayLike) -> None:
         """Replaces the window that starts at (row0, col0) by ``patch``, true where occupied.
 
-        Raises OutOfMap if the window does not lie in the map.
+        What was prepared is kept up in and round the window. Raises OutOfMap if the window does
+        not lie in the map.
         """
         mask = np.asarray(patch, dtype=bool)
         check_window(row0, col0, mask.shape, (self.rows, self.columns))
-        rows, columns = mask.shape
-        self._blocked[row0 + 1 : row0 + 1 + rows, col0 + 1 : col0 + 1 + columns] = mask
-        bottom, right = (
-            min(row0 + rows + 2, self.rows + 1),
-            min(col0 + columns + 2, self._width - 1),
-        )
-        kernel.find_moves(self._blocked, self._moves, max(row0, 1), max(col0, 1), bottom, right)
-        self._sums = None
+        if 0 in mask.shape:
+            return
+        bottom, right = row0 + mask.shape[0], col0 + mask.shape[1]
+        # The window and one cell more all round changes; two cells more tell how.
+        top, left = max(row0 - 1, 0), max(col0 - 1, 0)
+        end, side = min(bottom + 1, self.rows), min(right + 1, self.columns)
+        blocked = (self._near[top : end + 2, left : side + 2] == 0).view(np.uint8)
+        within = np.s_[row0 - top + 1 : bottom - top + 1, col0 - left + 1 : right - left + 1]
+        change = mask.astype(np.int32) - blocked[within]
+        if not change.any():
+            return
+        blocked[within] = mask
+        find_near(blocked, self._near[top + 1 : end + 1, left + 1 : side + 1])
+        if self._sums is not None:
+            more = change.cumsum(axis=0).cumsum(axis=1)
+            self._sums[row0 + 1 : bottom + 1, col0 + 1 : right + 1] += more
+            self._sums[row0 + 1 : bottom + 1, right + 1 :] += more[:, -1:]
+            self._sums[bottom + 1 :, col0 + 1 : right + 1] += more[-1]
+            self._sums[bottom + 1 :, right + 1 :] += more[-1, -1]
+        if self._lines is not None:
+            self._pack(row0 + 1, col0 + 1, bottom + 1, right + 1)
+        self._jumps = None
 
     def search(
         self,
@@ -94,65 +134,102 @@ class SearchGrid:
         heuristic: HeuristicConfig | None = None,
         explored: bool = False,
     ) -> SearchResult:
-        """The way from cell to cell by ``algorithm``, a name in ``PLANNERS`` (Eqs. 2-3).
+        """The way from cell to cell by ``algorithm``, a name in ``ALGORITHMS``.
 
-        dijkstra and astar find the shortest way of the 8-connected grid, within 3e-7 of its length.
-        Raises OutOfMap, StartOccupied, GoalOccupied or NoPath; ConfigError for an unknown name.
+        dijkstra, astar, jump and auto find the shortest way of the 8-connected grid, within 3e-7 of
+        its length: all round, towards the goal, by jump points, or as fits the map. weighted and
+        improved are Eqs. 2-3 with the terms of ``heuristic``. Raises OutOfMap, StartOccupied,
+        GoalOccupied or NoPath; ConfigError for an unknown name.
         """
-        config = choose(algorithm, PLANNERS, "planner")(heuristic or HeuristicConfig())
+        choose(algorithm, ALGORITHMS, "planner")
         start, goal = self._inside(start_rc, "start"), self._inside(goal_rc, "goal")
-        if self._blocked[start[0] + 1, start[1] + 1]:
+        if not self.is_free(start):
             raise StartOccupied(f"the start, cell {start}, is occupied: expected a free cell")
-        if self._blocked[goal[0] + 1, goal[1] + 1]:
+        if not self.is_free(goal):
             raise GoalOccupied(f"the goal, cell {goal}, is occupied: expected a free cell")
-        found, expanded = self._run(start, goal, config)
+        found, expanded = self._run(start, goal, algorithm, heuristic or HeuristicConfig())
         if not found:
             raise NoPath(
                 f"no way leads from cell {start} to cell {goal}: "
                 f"the {expanded} cells that can be reached from the start do not hold the goal"
             )
-        cells = kernel.trace(self._state, self._width, self._node(goal))
-        return SearchResult(
-            cells, way_length(cells), expanded, self.expanded_cells() if explored else None
-        )
+        cells, cost = self._trace(goal)
+        return SearchResult(cells, cost, expanded, self.expanded_cells() if explored else None)
 
     def flood(self, start_rc: Cell) -> npt.NDArray[np.float64]:
         """Lengths in cells, [rows, columns], of the shortest ways from a cell; inf if none."""
         start = self._inside(start_rc, "start")
-        self._run(start, None, PLANNERS["dijkstra"](HeuristicConfig()))
-        lengths = (self._state >> kernel.G_SHIFT) / kernel.STRAIGHT
-        lengths[~_closed(self._state, self._stamp)] = np.inf
-        return lengths.reshape(self._blocked.shape)[1:-1, 1:-1]
+        self._run(start, None, "dijkstra", HeuristicConfig())
+        lengths = (self._labels >> labels.G_SHIFT) / labels.STRAIGHT
+        lengths[~self._closed(self._labels)] = np.inf
+        return lengths.reshape(self._near.shape)[1:-1, 1:-1]
 
     def reached(self, cell: Cell) -> bool:
         """Whether the last search or flood expanded a cell."""
         node = self._node(self._inside(cell, "cell"))
-        return bool(_closed(self._state[node : node + 1], self._stamp)[0])
+        return bool(self._closed(self._labels[node : node + 1])[0])
 
     def way_to(self, cell: Cell) -> Cells:
         """The way (n, 2) to a cell that the last search or flood expanded; NoPath for any other."""
         if not self.reached(cell):
             raise NoPath(f"cell {cell} was not reached by the last search: expected one that was")
-        return kernel.trace(self._state, self._width, self._node(cell))
+        return self._trace(cell)[0]
 
     def expanded_cells(self) -> Cells:
         """The cells (m, 2) that the last search expanded, row by row."""
-        nodes = np.flatnonzero(_closed(self._state, self._stamp))
+        nodes = np.flatnonzero(self._closed(self._labels))
         return np.column_stack(np.divmod(nodes, self._width)).astype(np.int32) - np.int32(1)
 
-    def _run(self, start: Cell, goal: Cell | None, config: HeuristicConfig) -> tuple[bool, int]:
-        if self._stamp == kernel.MAX_STAMP:
-            self._state[:] = 0
+    def _run(
+        self, start: Cell, goal: Cell | None, algorithm: str, heuristic: HeuristicConfig
+    ) -> tuple[bool, int]:
+        """Whether the goal was found, and how many cells were expanded."""
+        if self._stamp == labels.MAX_STAMP:
+            self._labels[:] = 0
             self._stamp = 0
         self._stamp += 1
-        sums = self.sums if config.exponential else _NO_SUMS
-        terms = kernel_terms(config, start, goal or start, int(sums[-1, -1]))
-        found, expanded, self._heap, self._nodes = kernel.search(
-            self._moves.reshape(-1), sums, self._width, self._state, self._stamp,
-            self._node(start), -1 if goal is None else self._node(goal), terms,
-            self._heap, self._nodes,
+        from_to = self._node(start), -1 if goal is None else self._node(goal)
+        where = self._width, self._labels, self._stamp, *from_to
+        near = self._near.reshape(-1)
+        if algorithm == "auto":
+            algorithm = "jump" if self._prefers_jumps() else "astar"
+        if algorithm == "jump":
+            found, expanded, self._pool, self._nodes = jump_kernel.jump_search(
+                near, CANONICAL, *self.lines, *where, self._pool, self._nodes
+            )
+            return found, expanded
+        terms = PLANNERS[algorithm](heuristic)
+        if algorithm in ("dijkstra", "astar") and terms.estimate == "octile":
+            found, expanded, self._pool = bucket_kernel.shortest(
+                near, CANONICAL, *where, terms.weight > 0.0, self._heads, self._pool
+            )
+            return found, expanded
+        sums = self.sums if terms.exponential else _NO_SUMS
+        found, expanded, self._pool, self._nodes = heap_kernel.search(
+            near, sums, *where, kernel_terms(terms, start, goal or start, int(sums[-1, -1])),
+            self._pool, self._nodes,
         )  # fmt: skip
         return found, expanded
+
+    def _prefers_jumps(self) -> bool:
+        """Whether the map has so few corners that jumping from one to the next is worth it."""
+        if self._jumps is None:
+            stride = max(1, self._near.size // SAMPLED) | 1
+            free, turns = count_turns(self._near.reshape(-1), TURNS, stride)
+            self._jumps = turns < JUMP_BELOW * free
+        return self._jumps
+
+    def _pack(self, top: int, left: int, bottom: int, right: int) -> None:
+        rows, columns = self.lines
+        jump_kernel.pack(self._near, rows, top, left, bottom, right)
+        jump_kernel.pack(self._near.T, columns, left, top, right, bottom)
+
+    def _trace(self, goal: Cell) -> tuple[Cells, float]:
+        return labels.trace(self._labels, self._stamp, self._width, self._node(goal))
+
+    def _closed(self, known: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
+        mine = self._stamp << labels.STAMP_SHIFT | 1
+        return (known & (labels.STAMP_BITS | 1)) == mine
 
     def _node(self, cell: Cell) -> int:
         return (cell[0] + 1) * self._width + cell[1] + 1
@@ -178,15 +255,4 @@ def check_window(row0: int, col0: int, window: tuple[int, ...], whole: tuple[int
         )
 
 
-def _closed(state: npt.NDArray[np.int64], stamp: int) -> npt.NDArray[np.bool_]:
-    return (state & (kernel.STAMP_BITS | 1)) == (stamp << kernel.STAMP_SHIFT | 1)
-
-
 _NO_SUMS = np.zeros((1, 1), np.int32)
-
-
-def way_length(cells: npt.ArrayLike) -> float:
-    """Length in cells of a way (n, 2), counted from its straight and its diagonal steps."""
-    steps = np.abs(np.diff(np.asarray(cells), axis=0)).sum(axis=1)
-    diagonal = int((steps == 2).sum())
-    return len(steps) - diagonal + diagonal * 2.0**0.5

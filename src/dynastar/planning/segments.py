@@ -7,7 +7,8 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
+
+from dynastar.compiled import njit
 
 Bytes = npt.NDArray[np.uint8]
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from dynastar.compiled import njit
 from dynastar.planning.segments import Bytes, is_clear, mask_bytes
 
 Points = npt.NDArray[np.float64]

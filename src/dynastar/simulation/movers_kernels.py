@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
+
+from dynastar.compiled import njit
 
 Floats = npt.NDArray[np.float64]
 

@@ -1,13 +1,7 @@
-"""The one search kernel: Eq. 3 on an 8-connected grid that cuts no corners.
+"""The search of Eq. 3, whatever its terms, on an open list that is a binary heap.
 
-The grid is padded by one blocked cell all round and flattened; a node is an index into it. Lengths
-are whole numbers with 1393 / 985 for sqrt(2), 2.6e-7 off, so that equal ways tie exactly; a cost
-that is told to anybody is counted anew from the steps. What is known of a node sits in one int64:
-
-    g (36 bits) | stamp of the search (22) | direction it was reached in (4) | closed (1)
-
-and an entry of the open list is f (36 bits) | 2^27 - serial number (27): of equal f the newest
-comes first. A node whose way got shorter is entered again; its old entries find it closed.
+An entry of the heap is f (34 bits) | 2^29 - serial number (29): of equal f the newest comes first.
+A node whose way got shorter is entered again; its old entries find it closed.
 """
 
 import math
@@ -15,26 +9,24 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
-Ints = npt.NDArray[np.int64]
-Bytes = npt.NDArray[np.uint8]
+from dynastar.compiled import njit, trailing_zeros
+from dynastar.planning.labels import (
+    DIAGONAL,
+    DIRECTION_SHIFT,
+    G_SHIFT,
+    STAMP_BITS,
+    STAMP_SHIFT,
+    STRAIGHT,
+    Ints,
+    grown,
+    octile,
+)  # fmt: skip
+from dynastar.planning.neighbours import COLUMN_STEP, LEGAL, NO_DIRECTION, ROW_STEP, Bytes
 
-STRAIGHT, DIAGONAL = 985, 1393
-MAX_NODES = 1 << 25
-
-# Directions 0 to 7 go round; the odd ones are diagonal.
-ROW_STEP = np.array([1, 1, 0, -1, -1, -1, 0, 1])
-COLUMN_STEP = np.array([0, 1, 1, 1, 0, -1, -1, -1])
-
-G_SHIFT, STAMP_SHIFT, DIRECTION_SHIFT = 27, 5, 1
-MAX_STAMP = (1 << (G_SHIFT - STAMP_SHIFT)) - 1
-STAMP_BITS = MAX_STAMP << STAMP_SHIFT
-NO_DIRECTION = 8  # how the start was reached
-
-F_SHIFT = 27
+F_SHIFT = 29
 SERIAL_BITS = (1 << F_SHIFT) - 1
-MAX_F = (1 << 36) - 1
+MAX_F = (1 << 34) - 1
 
 
 class Terms(NamedTuple):
@@ -54,31 +46,12 @@ class Terms(NamedTuple):
     k: float
 
 
-@njit(cache=True)
-def find_moves(blocked: Bytes, moves: Bytes, top: int, left: int, bottom: int, right: int) -> None:
-    """Sets bit d of ``moves`` [rows, columns] (padded) where direction d is legal, in a window.
-
-    A diagonal step needs both cells beside it free. The window ends before ``bottom``, ``right``.
-    """
-    for y in range(top, bottom):
-        for x in range(left, right):
-            free = 0
-            if not blocked[y, x]:
-                for d in range(8):
-                    if not blocked[y + ROW_STEP[d], x + COLUMN_STEP[d]]:
-                        free |= 1 << d
-            round_once = free | free << 8
-            beside = (round_once >> 1) & (round_once >> 7)
-            moves[y, x] = free & (0b01010101 | beside)
-
-
 @njit(cache=True, inline="always")
 def estimate(rows: int, columns: int, euclidean: bool) -> int:
     """h: the way over a free 8-connected grid, or the straight line."""
     if euclidean:
         return int(STRAIGHT * math.sqrt(rows * rows + columns * columns))
-    rows, columns = abs(rows), abs(columns)
-    return STRAIGHT * max(rows, columns) + (DIAGONAL - STRAIGHT) * min(rows, columns)
+    return octile(rows, columns)
 
 
 @njit(cache=True, inline="always")
@@ -150,19 +123,11 @@ def pop(heap: Ints, size: int) -> int:
 
 
 @njit(cache=True)
-def grown(array: Ints) -> Ints:
-    """The same array with twice the room."""
-    larger = np.empty(2 * array.size, array.dtype)
-    larger[: array.size] = array
-    return larger
-
-
-@njit(cache=True)
 def search(
-    moves: Bytes, sums: Ints, width: int, state: Ints, stamp: int,
+    near: Bytes, sums: Ints, width: int, labels: Ints, stamp: int,
     start: int, goal: int, terms: Terms, heap: Ints, nodes: npt.NDArray[np.int32],
 ) -> tuple[bool, int, Ints, npt.NDArray[np.int32]]:  # fmt: skip
-    """Expands from ``start`` until ``goal`` (-1: everything) is closed; the ways stay in ``state``.
+    """Expands from ``start`` until ``goal`` (-1: everything) is closed; the ways stay in ``labels``.
 
     Returns whether the goal was found, how many nodes were expanded, and the two work arrays
     ``heap`` and ``nodes`` (nodes[serial number] is the node of an entry), which may have grown.
@@ -171,17 +136,17 @@ def search(
     tag = stamp << STAMP_SHIFT
     start_cell = (start // width, start % width)
     goal_cell = (goal // width, goal % width)
-    state[start] = tag | NO_DIRECTION << DIRECTION_SHIFT
+    labels[start] = tag | NO_DIRECTION << DIRECTION_SHIFT
     nodes[0] = start
     heap[0] = SERIAL_BITS
     size, serial, expanded = 1, 1, 0
     while size > 0:
         node = np.int64(nodes[SERIAL_BITS - (pop(heap, size) & SERIAL_BITS)])
         size -= 1
-        known = state[node]
-        if known & 1:
+        label = labels[node]
+        if label & 1:
             continue
-        state[node] = known | 1
+        labels[node] = label | 1
         expanded += 1
         if node == goal:
             return True, expanded, heap, nodes
@@ -189,19 +154,19 @@ def search(
             heap = grown(heap)
         if serial + 8 > nodes.size:
             nodes = grown(nodes)
-        g = known >> G_SHIFT
+        g = label >> G_SHIFT
         y = node // width
         x = node - y * width
-        legal = moves[node]
-        for d in range(8):
-            if not (legal >> d) & 1:
-                continue
+        untried = np.uint64(LEGAL[near[node]])
+        while untried != 0:
+            d = trailing_zeros(untried)
+            untried &= untried - np.uint64(1)
             neighbour = node + steps[d]
             g_new = g + (DIAGONAL if d & 1 else STRAIGHT)
-            there = state[neighbour]
+            there = labels[neighbour]
             if (there & STAMP_BITS) == tag and ((there & 1) or (there >> G_SHIFT) <= g_new):
                 continue
-            state[neighbour] = g_new << G_SHIFT | tag | d << DIRECTION_SHIFT
+            labels[neighbour] = g_new << G_SHIFT | tag | d << DIRECTION_SHIFT
             n = (y + ROW_STEP[d], x + COLUMN_STEP[d])
             if terms.adaptive:
                 h = h_adaptive(terms, sums, n, (y, x), start_cell, goal_cell)
@@ -213,21 +178,3 @@ def search(
             size += 1
             serial += 1
     return False, expanded, heap, nodes
-
-
-@njit(cache=True)
-def trace(state: Ints, width: int, goal: int) -> npt.NDArray[np.int32]:
-    """The way (n, 2) that the last search found to ``goal``, in unpadded (row, column)."""
-    steps = ROW_STEP * width + COLUMN_STEP
-    count, node = 1, goal
-    while (state[node] >> DIRECTION_SHIFT) & 15 != NO_DIRECTION:
-        node -= steps[(state[node] >> DIRECTION_SHIFT) & 15]
-        count += 1
-    cells = np.empty((count, 2), np.int32)
-    node = goal
-    for i in range(count - 1, -1, -1):
-        cells[i, 0] = node // width - 1
-        cells[i, 1] = node % width - 1
-        if i > 0:
-            node -= steps[(state[node] >> DIRECTION_SHIFT) & 15]
-    return cells

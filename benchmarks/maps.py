@@ -1,0 +1,128 @@
+"""Families of grids to search, seeded, and queries on them: the same for everybody who is timed."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.io.movingai import load_movingai_map
+
+Mask = npt.NDArray[np.bool_]
+Cell = tuple[int, int]
+
+
+class Case(NamedTuple):
+    """A map and what is asked of it: pairs of free cells with a way between them."""
+
+    kind: str
+    name: str
+    occupied: Mask
+    queries: list[tuple[Cell, Cell]]
+
+
+def random_cells(n: int, density: float, seed: int) -> Mask:
+    """Every cell for itself."""
+    return np.random.default_rng([1, n, round(100 * density), seed]).random((n, n)) < density
+
+
+def rooms(n: int, size: int, seed: int) -> Mask:
+    """Square rooms with walls a cell thick; most neighbours share a door two cells wide."""
+    rng = np.random.default_rng([2, n, size, seed])
+    occupied = np.zeros((n, n), bool)
+    occupied[::size] = occupied[:, ::size] = True
+    occupied[-1] = occupied[:, -1] = True
+    for top in range(0, n - size, size):
+        for left in range(0, n - size, size):
+            for down, right in ((1, 0), (0, 1)):
+                if rng.random() < 0.8:
+                    at = int(rng.integers(2, size - 2))
+                    wall = (top + size, left + at) if down else (top + at, left + size)
+                    if max(wall) < n - 2:
+                        occupied[wall] = occupied[wall[0] + right, wall[1] + down] = False
+    return occupied
+
+
+def maze(n: int, corridor: int, seed: int) -> Mask:
+    """A maze with one way between any two places (depth first), corridors so many cells wide."""
+    rng = np.random.default_rng([3, n, corridor, seed])
+    pitch = corridor + 1
+    k = (n - 1) // pitch
+    occupied = np.ones((n, n), bool)
+    seen = np.zeros((k, k), bool)
+    seen[0, 0] = True
+    occupied[1 : 1 + corridor, 1 : 1 + corridor] = False
+    stack = [(0, 0)]
+    while stack:
+        row, column = stack[-1]
+        ways = [
+            (row + i, column + j)
+            for i, j in ((0, 1), (1, 0), (0, -1), (-1, 0))
+            if 0 <= row + i < k and 0 <= column + j < k and not seen[row + i, column + j]
+        ]
+        if not ways:
+            stack.pop()
+            continue
+        there = ways[int(rng.integers(len(ways)))]
+        seen[there] = True
+        top, bottom = sorted((row, there[0]))
+        left, right = sorted((column, there[1]))
+        occupied[
+            1 + top * pitch : 1 + bottom * pitch + corridor,
+            1 + left * pitch : 1 + right * pitch + corridor,
+        ] = False
+        stack.append(there)
+    return occupied
+
+
+def office(n: int, seed: int) -> Mask:
+    """Rooms with desks in them: blocks of 3 x 8 cells, and a few cells of clutter."""
+    rng = np.random.default_rng([4, n, seed])
+    occupied = rooms(n, 48, seed)
+    for _ in range(n * n // 700):
+        tall, wide = (3, 8) if rng.random() < 0.5 else (8, 3)
+        top, left = rng.integers(1, n - 9, 2)
+        occupied[top : top + tall, left : left + wide] = True
+    return occupied
+
+
+def queries(occupied: Mask, count: int, seed: int) -> list[tuple[Cell, Cell]]:
+    """Pairs of cells of the largest connected piece, far apart more often than near."""
+    import cv2
+
+    free = (~occupied).view(np.uint8)
+    _, labels, stats, _ = cv2.connectedComponentsWithStats(free, connectivity=4)
+    largest = 1 + int(np.argmax(stats[1:, cv2.CC_STAT_AREA]))
+    cells = np.argwhere(labels == largest)
+    rng = np.random.default_rng([5, seed])
+    found = []
+    for _ in range(count):
+        pairs = cells[rng.integers(0, len(cells), (3, 2))]
+        far = np.abs(pairs[:, 0] - pairs[:, 1]).sum(axis=1).argmax()
+        start, goal = pairs[far]
+        found.append(((int(start[0]), int(start[1])), (int(goal[0]), int(goal[1]))))
+    return found
+
+
+def cases(data: Path | None, seed: int = 0, count: int = 5) -> Iterator[Case]:
+    """All maps of the tables; the MovingAI ones only where the data lies."""
+    drawn: list[tuple[str, str, Mask]] = []
+    for n in (256, 512, 1024):
+        for density in (0.1, 0.2, 0.3, 0.4):
+            drawn.append(("random", f"{n}, {density:.0%}", random_cells(n, density, seed)))
+    for n in (256, 512, 1024):
+        for size in (9, 17, 33, 65):
+            drawn.append(("rooms", f"{n}, {size}", rooms(n, size, seed)))
+        for corridor in (1, 2, 4, 8, 16):
+            drawn.append(("maze", f"{n}, {corridor}", maze(n, corridor, seed)))
+    for n in (2048, 4096):
+        drawn.append(("large", f"{n}, random 20%", random_cells(n, 0.2, seed)))
+        drawn.append(("large", f"{n}, rooms 65", rooms(n, 65, seed)))
+        drawn.append(("large", f"{n}, maze 8", maze(n, 8, seed)))
+        drawn.append(("large", f"{n}, office", office(n, seed)))
+    if data is not None:
+        for path in sorted(data.glob("**/*.map")):
+            drawn.append(("movingai", path.stem, load_movingai_map(path).occupied))
+    for kind, name, occupied in drawn:
+        yield Case(kind, name, occupied, queries(occupied, count, seed))

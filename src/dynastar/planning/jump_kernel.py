@@ -1,0 +1,210 @@
+"""Jump-point search: A* that jumps along straight ways to where a shortest way may have to turn.
+
+[Harabor and Grastien, 2011 and 2014], without corner cutting and without tables to prepare: the
+blocked cells of every row and of every column are kept as bits, so that a jump looks at 64 cells at
+a time. A line's bits are those of its neighbours behind a corner, seen in the direction of travel.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.compiled import leading_zeros, njit, trailing_zeros
+from dynastar.planning.bucket_kernel import ALL, ONE
+from dynastar.planning.heap_kernel import F_SHIFT, SERIAL_BITS, pop, push
+from dynastar.planning.labels import (
+    DIAGONAL,
+    DIRECTION_SHIFT,
+    G_SHIFT,
+    STAMP_BITS,
+    STAMP_SHIFT,
+    STRAIGHT,
+    Ints,
+    grown,
+    octile,
+)  # fmt: skip
+from dynastar.planning.neighbours import COLUMN_STEP, LEGAL, NO_DIRECTION, ROW_STEP, Bytes
+
+Words = npt.NDArray[np.uint64]
+
+TOP = np.uint64(63)
+
+
+@njit(cache=True)
+def pack(near: Bytes, rows: Words, top: int, left: int, bottom: int, right: int) -> None:
+    """Sets the bits of ``rows`` [y, words] where cells of ``near`` [y, x] are blocked, in a window.
+
+    Beyond the last column everything is blocked. The window ends before ``bottom``, ``right``.
+    """
+    for i in range(left >> 6, ((right - 1) >> 6) + 1):
+        for y in range(top, bottom):
+            word = np.uint64(0)
+            for bit in range(64):
+                x = (i << 6) + bit
+                if x >= near.shape[1] or near[y, x] == 0:
+                    word |= ONE << np.uint64(bit)
+            rows[y, i] = word
+
+
+@njit(cache=True, inline="always")
+def jump_up(lines: Words, line: int, at: int, goal: int) -> int:
+    """From ``at`` towards larger numbers: where to stop on a line, or -1 if it leads nowhere.
+
+    It stops at ``goal`` (-1: not on this line), and where a cell beside the line is free after a
+    blocked one.
+    """
+    i = at >> 6
+    beside, other, here = lines[line - 1, i], lines[line + 1, i], lines[line, i]
+    carry = other_carry = np.uint64(0)
+    if i > 0:
+        carry, other_carry = lines[line - 1, i - 1] >> TOP, lines[line + 1, i - 1] >> TOP
+    ahead = (ALL << np.uint64(at & 63)) << ONE
+    while True:
+        corners = ((beside << ONE | carry) & ~beside) | ((other << ONE | other_carry) & ~other)
+        stops = (corners | here) & ahead
+        if stops != 0:
+            bit = trailing_zeros(stops)
+            found = (i << 6) + bit
+            wall = (here >> np.uint64(bit)) & ONE
+            if at < goal <= found and (goal < found or not wall):
+                return goal
+            return -1 if wall else found
+        carry, other_carry, ahead = beside >> TOP, other >> TOP, ALL
+        i += 1
+        beside, other, here = lines[line - 1, i], lines[line + 1, i], lines[line, i]
+
+
+@njit(cache=True, inline="always")
+def jump_down(lines: Words, line: int, at: int, goal: int) -> int:
+    """``jump_up`` towards smaller numbers."""
+    i = at >> 6
+    last = lines.shape[1] - 1
+    beside, other, here = lines[line - 1, i], lines[line + 1, i], lines[line, i]
+    carry = other_carry = np.uint64(0)
+    if i < last:
+        carry, other_carry = lines[line - 1, i + 1] << TOP, lines[line + 1, i + 1] << TOP
+    ahead = (ONE << np.uint64(at & 63)) - ONE
+    while True:
+        corners = ((beside >> ONE | carry) & ~beside) | ((other >> ONE | other_carry) & ~other)
+        stops = (corners | here) & ahead
+        if stops != 0:
+            bit = 63 - leading_zeros(stops)
+            found = (i << 6) + bit
+            wall = (here >> np.uint64(bit)) & ONE
+            if found <= goal < at and (goal > found or not wall):
+                return goal
+            return -1 if wall else found
+        carry, other_carry, ahead = beside << TOP, other << TOP, ALL
+        i -= 1
+        beside, other, here = lines[line - 1, i], lines[line + 1, i], lines[line, i]
+
+
+@njit(cache=True, inline="always")
+def straight_jump(
+    rows: Words, columns: Words, y: int, x: int, d: int, goal_y: int, goal_x: int
+) -> int:
+    """Cells to the end of the jump from (y, x) in a straight direction, 0 if it leads nowhere."""
+    if d == 2:
+        end = jump_up(rows, y, x, goal_x if y == goal_y else -1)
+        return end - x if end >= 0 else 0
+    if d == 6:
+        end = jump_down(rows, y, x, goal_x if y == goal_y else -1)
+        return x - end if end >= 0 else 0
+    if d == 0:
+        end = jump_up(columns, x, y, goal_y if x == goal_x else -1)
+        return end - y if end >= 0 else 0
+    end = jump_down(columns, x, y, goal_y if x == goal_x else -1)
+    return y - end if end >= 0 else 0
+
+
+@njit(cache=True)
+def enter(
+    labels: Ints, tag: int, node: int, g: int, d: int, h: int,
+    heap: Ints, nodes: npt.NDArray[np.int32], size: int, serial: int,
+) -> tuple[int, int]:  # fmt: skip
+    """Labels a node and enters it into the open list, if the way is shorter than what is known."""
+    there = labels[node]
+    if (there & STAMP_BITS) == tag and ((there & 1) or (there >> G_SHIFT) <= g):
+        return size, serial
+    labels[node] = g << G_SHIFT | tag | d << DIRECTION_SHIFT
+    nodes[serial] = node
+    push(heap, size, (g + h) << F_SHIFT | (SERIAL_BITS - serial))
+    return size + 1, serial + 1
+
+
+@njit(cache=True)
+def jump_search(
+    near: Bytes, table: Bytes, rows: Words, columns: Words, width: int, labels: Ints, stamp: int,
+    start: int, goal: int, heap: Ints, nodes: npt.NDArray[np.int32],
+) -> tuple[bool, int, Ints, npt.NDArray[np.int32]]:  # fmt: skip
+    """Expands jump points from ``start`` until ``goal`` is closed; the ways stay in ``labels``.
+
+    On a diagonal there is nothing to turn round, so it is followed to its end and the jumps to
+    either side of it are entered; the cell that one leaves it at is labelled, but not entered.
+    Returns whether the goal was found, how many nodes were expanded, and the two work arrays (see
+    heap_kernel), which may have grown.
+    """
+    steps = ROW_STEP * width + COLUMN_STEP
+    tag = stamp << STAMP_SHIFT
+    goal_y, goal_x = goal // width, goal % width
+    most = 8 * max(len(rows), len(columns))  # that one node can enter
+    labels[start] = tag | NO_DIRECTION << DIRECTION_SHIFT
+    while heap.size < most:
+        heap = grown(heap)
+    while nodes.size < most:
+        nodes = grown(nodes)
+    nodes[0] = start
+    heap[0] = SERIAL_BITS
+    size, serial, expanded = 1, 1, 0
+    while size > 0:
+        node = np.int64(nodes[SERIAL_BITS - (pop(heap, size) & SERIAL_BITS)])
+        size -= 1
+        label = labels[node]
+        if label & 1:
+            continue
+        labels[node] = label | 1
+        expanded += 1
+        if node == goal:
+            return True, expanded, heap, nodes
+        while size + most > heap.size:
+            heap = grown(heap)
+        while serial + most > nodes.size:
+            nodes = grown(nodes)
+        g = label >> G_SHIFT
+        y, x = node // width, node % width
+        untried = np.uint64(table[((label >> DIRECTION_SHIFT) & 15) << 8 | near[node]])
+        while untried != 0:
+            d = trailing_zeros(untried)
+            untried &= untried - ONE
+            diagonal = d & 1 == 1
+            one_side, other_side = ((d + 1) & 7, (d - 1) & 7) if diagonal else (d, d)
+            at, at_y, at_x, at_g = node, y, x, g
+            while not diagonal or (LEGAL[near[at]] >> d) & 1:
+                if diagonal:
+                    at, at_y, at_x = at + steps[d], at_y + ROW_STEP[d], at_x + COLUMN_STEP[d]
+                    at_g += DIAGONAL
+                    if at == goal:
+                        size, serial = enter(labels, tag, at, at_g, d, 0, heap, nodes, size, serial)
+                        break
+                side = one_side
+                while True:
+                    cells = straight_jump(rows, columns, at_y, at_x, side, goal_y, goal_x)
+                    if cells > 0:
+                        there = labels[at]
+                        if at != node and (
+                            (there & STAMP_BITS) != tag or (there >> G_SHIFT) > at_g
+                        ):
+                            labels[at] = at_g << G_SHIFT | tag | d << DIRECTION_SHIFT
+                        h = octile(
+                            at_y + cells * ROW_STEP[side] - goal_y,
+                            at_x + cells * COLUMN_STEP[side] - goal_x,
+                        )
+                        size, serial = enter(
+                            labels, tag, at + cells * steps[side], at_g + cells * STRAIGHT,
+                            side, h, heap, nodes, size, serial,
+                        )  # fmt: skip
+                    if side == other_side:
+                        break
+                    side = other_side
+                if not diagonal:
+                    break
+    return False, expanded, heap, nodes

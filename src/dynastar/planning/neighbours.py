@@ -1,0 +1,95 @@
+"""What is free round each cell of a grid, and which steps of that a search has to try.
+
+The grid is padded by one blocked cell all round and flattened; a node is an index into it. A cell's
+byte ``near`` has bit d set where its neighbour in direction d is free. 0 means that the cell itself
+is blocked; a free cell with nothing free round it has the bit of a diagonal, which is no step, for
+a diagonal step needs both cells beside it free (no corner is cut).
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.compiled import njit
+
+Bytes = npt.NDArray[np.uint8]
+
+# Directions 0 to 7 go round; the odd ones are diagonal.
+ROW_STEP = np.array([1, 1, 0, -1, -1, -1, 0, 1])
+COLUMN_STEP = np.array([0, 1, 1, 1, 0, -1, -1, -1])
+NO_DIRECTION = 8  # how a start was reached
+
+LONELY = 0b10  # ``near`` of a free cell with nothing free round it
+
+
+def legal_steps(near: int) -> int:
+    """Bits of the directions that can be taken from a cell."""
+    steps = 0
+    for d in range(8):
+        beside = near >> (d + 1) % 8 & near >> (d - 1) % 8 & 1
+        if near >> d & 1 and (d % 2 == 0 or beside):
+            steps |= 1 << d
+    return steps
+
+
+def canonical_steps(reached: int, near: int) -> int:
+    """Of the legal steps, those that some shortest way takes from a cell reached in a direction.
+
+    Among ways of the same length the one counts that goes diagonally first. So a diagonal goes on
+    or turns to either of its straight directions; a straight step goes on, and turns only round a
+    corner that it has just passed (Harabor and Grastien's jump points, no corner cutting).
+    """
+    if reached == NO_DIRECTION:
+        kept = 0xFF
+    elif reached % 2:
+        kept = 1 << reached | 1 << (reached + 1) % 8 | 1 << (reached - 1) % 8
+    else:
+        kept = 1 << reached
+        for side in (1, -1):
+            behind, beside = (reached + 3 * side) % 8, (reached + 2 * side) % 8
+            if near >> beside & 1 and not near >> behind & 1:
+                kept |= 1 << beside | 1 << (reached + side) % 8
+    return legal_steps(near) & kept
+
+
+LEGAL = np.array([legal_steps(near) for near in range(256)], np.uint8)
+CANONICAL = np.array([canonical_steps(d, near) for d in range(9) for near in range(256)], np.uint8)
+
+
+def corner_turns(near: int) -> int:
+    """How many diagonals a way that comes straight may have to turn to, over all it can come by."""
+    turns = 0
+    for d in (0, 2, 4, 6):
+        if near >> (d + 4) % 8 & 1:
+            turned = canonical_steps(d, near) & ~(1 << d) & 0b10101010
+            turns += turned.bit_count()
+    return turns
+
+
+TURNS = np.array([corner_turns(near) for near in range(256)], np.uint8)
+
+
+@njit(cache=True)
+def find_near(blocked: Bytes, near: Bytes) -> None:
+    """Fills ``near`` [rows, columns]; ``blocked`` is the same cells, 0 or 1, with a ring of more."""
+    rows, columns = near.shape
+    for y in range(rows):
+        above, here, below = blocked[y], blocked[y + 1], blocked[y + 2]
+        for x in range(columns):
+            # fmt: off
+            taken = np.uint8(
+                below[x + 1] | below[x + 2] << 1 | here[x + 2] << 2 | above[x + 2] << 3
+                | above[x + 1] << 4 | above[x] << 5 | here[x] << 6 | below[x] << 7
+            )
+            # fmt: on
+            free = np.uint8(255 - taken)
+            near[y, x] = (free | (free == 0) << 1) * (1 - here[x + 1])
+
+
+@njit(cache=True)
+def count_turns(near: Bytes, turns: Bytes, stride: int) -> tuple[int, int]:
+    """Of every ``stride``-th node, how many are free, and the sum of ``turns[near]`` over them."""
+    free = total = 0
+    for node in range(0, near.size, stride):
+        free += near[node] != 0
+        total += turns[near[node]]
+    return free, total

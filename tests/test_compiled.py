@@ -1,0 +1,55 @@
+import os
+import subprocess
+import sys
+
+import pytest
+
+from dynastar import compiled
+
+PLAN = "from dynastar.planning import SearchGrid as G; G([[0, 0]]).search((0, 0), (0, 1), 'jump')"
+
+
+def run(code, cache, *arguments):
+    env = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
+    env["XDG_CACHE_HOME"] = str(cache)
+    command = [sys.executable, "-c", code, *arguments]
+    return subprocess.run(command, env=env, capture_output=True, text=True, check=True)
+
+
+@pytest.mark.slow
+def test_the_first_use_says_that_it_compiles_and_the_second_does_not(tmp_path):
+    first = run(PLAN, tmp_path)
+    assert first.stderr.count("dynastar compiles its kernels") == 1
+    assert first.stdout == ""
+    assert list((tmp_path / "dynastar").rglob("*.nbi"))
+    assert run(PLAN, tmp_path).stderr == ""
+    main = "import sys; from dynastar.cli import main; sys.exit(main(sys.argv[1:]))"
+    cleared = run(main, tmp_path, "warmup", "--clear")
+    assert "MB deleted" in cleared.stderr
+    assert not (tmp_path / "dynastar").exists()
+
+
+def test_the_folder_is_named_after_the_sources(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    before = compiled.cache()
+    assert before.parent == tmp_path / "dynastar"
+    source = tmp_path / "kernels.py"
+    source.write_text("from dynastar.compiled import njit\n")
+    monkeypatch.setattr(compiled, "__file__", str(tmp_path / "compiled.py"))
+    alone = compiled.cache()
+    source.write_text("from dynastar.compiled import njit  # edited\n")
+    assert len({before, alone, compiled.cache()}) == 3
+
+
+def test_importing_dynastar_imports_nothing_heavy():
+    code = """
+import sys
+import dynastar, dynastar.cli
+try:
+    dynastar.cli.main(["--help"])
+except SystemExit:
+    pass
+heavy = {"numpy", "numba", "matplotlib", "cv2", "shapely", "yaml", "tqdm"} & set(sys.modules)
+assert not heavy, heavy
+"""
+    subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
