@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -53,6 +54,9 @@ class Lidar(NamedTuple):
         return Pose2D(self.x, self.y, self.theta)
 
 
+PIECES = 4  # that a polygon is cut into for its covering discs
+
+
 @dataclass(frozen=True)
 class Footprint:
     """The room the robot takes, round its centre of rotation: a disc, or a convex polygon.
@@ -91,6 +95,29 @@ class Footprint:
             raise ConfigError("a footprint polygon does not contain the centre of rotation (0, 0)")
         circumscribed = float(np.hypot(points[:, 0], points[:, 1]).max())
         return Footprint(_readonly(points), circumscribed, float(inside.min()))
+
+    @property
+    def discs(self) -> npt.NDArray[np.float64]:
+        """Discs (k, 3) of centre x, y and radius, metres, that together cover a polygon; (0, 3) of a disc.
+
+        The polygon is cut across its longer side into pieces, and each has its disc.
+        """
+        if self.is_disc:
+            return np.empty((0, 3))
+        low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
+        axis = int(np.argmax(high - low))
+        cuts = np.linspace(low[axis], high[axis], PIECES + 1)
+        discs = []
+        for begin, end in pairwise(cuts):
+            corners = [v for v in self.vertices if begin <= v[axis] <= end]
+            for a, b in zip(self.vertices, np.roll(self.vertices, -1, axis=0), strict=True):
+                for cut in (begin, end):
+                    if min(a[axis], b[axis]) < cut < max(a[axis], b[axis]):
+                        corners.append(a + (b - a) * (cut - a[axis]) / (b[axis] - a[axis]))
+            piece = np.array(corners)
+            centre = 0.5 * (piece.min(axis=0) + piece.max(axis=0))
+            discs.append((*centre, np.hypot(*(piece - centre).T).max()))
+        return np.array(discs)
 
     @property
     def is_disc(self) -> bool:

@@ -17,7 +17,7 @@ from dynastar.robot import Limits, arc, slew
 
 LIMITS = Limits(1.0, 1.5, 1.0, 2.0, 1.0, 2.0)
 REVERSING = LIMITS._replace(v_min=-0.5)
-BODY = Body(np.empty((0, 2)), 0.3, 0.3)
+BODY = Body(np.empty((0, 2)), np.empty((0, 3)), 0.3, 0.3)
 HERE = Pose2D(5.0, 5.0, 0.0)
 OPEN = np.full((200, 200), 9.0, np.float32)
 WIDE = np.full((500, 500), 9.0, np.float32)

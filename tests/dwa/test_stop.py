@@ -7,7 +7,12 @@ from hypothesis import strategies as st
 
 from dynastar.clearance import distance_field
 from dynastar.dwa import Surroundings, stop_kernels
-from dynastar.dwa.clearance_kernels import centre_clearance, footprint_clearance
+from dynastar.dwa.clearance_kernels import (
+    centre_clearance,
+    covered_clearance,
+    footprint_clearance,
+    polygon_distance,
+)
 from dynastar.dwa.dwa import Body, Margins
 from dynastar.robot import Footprint, Limits, box
 
@@ -18,7 +23,7 @@ NOBODY = np.empty((0, 6))
 
 
 def body_of(footprint):
-    return Body(footprint.vertices, footprint.inscribed, footprint.circumscribed)
+    return Body(footprint.vertices, footprint.discs, footprint.inscribed, footprint.circumscribed)
 
 
 def round_about(field, movers=NOBODY):
@@ -50,6 +55,8 @@ def true_clearance(centres, footprint, x, y, theta):
 def test_clearance_is_a_close_lower_bound(footprint, seed, x, y, theta):
     field, centres = world(seed)
     found = footprint_clearance(round_about(field), body_of(footprint), 0.3, x, y, theta)
+    covered = covered_clearance(round_about(field), body_of(footprint), x, y, theta)
+    assert covered <= max(found, 0.0) + 1e-9 or found >= 0.3 - 1e-9
     truth = true_clearance(centres, footprint, x, y, theta)
     if footprint.is_disc or truth > 0.0:
         assert found <= truth + 1e-6
@@ -148,12 +155,52 @@ def test_movers_are_kept_clear_of_in_every_way_they_may_go(x, y, vx, vy, v, omeg
         mover, spread, radius, state, v, omega, ramp, stop, ramp + stop, 0.0
     )
     nearest = math.inf
+    turned = stop_kernels.stop_from(state, v, omega, ramp)
     for way in (1.0, 0.0, -1.0):
         for t in np.linspace(0.0, ramp + stop, 400):
-            px, py = stop_kernels.position_on_stop(state, v, omega, ramp, stop, t)
+            px, py = stop_kernels.position_on_stop(state, turned, v, omega, ramp, stop, t)
             gap = math.hypot(x + way * vx * t - px, y + way * vy * t - py)
             nearest = min(nearest, gap - radius - 0.3 - spread * t)
     if nearest > 0.02:
         assert touch == math.inf
     if nearest < -0.1 and math.hypot(x, y) > radius + 0.3 + 0.2:
         assert touch <= ramp + stop + 1e-9
+
+
+@given(*[st.floats(-3, 3)] * 4, st.floats(0.01, 2), st.floats(0, 2), st.floats(0, 6))
+@settings(max_examples=300, deadline=None)
+def test_when_a_point_enters_a_disc(x, y, vx, vy, reach, begin, span):
+    at = stop_kernels.enters(x, y, vx, vy, reach, begin, begin + span)
+    times = np.linspace(begin, begin + span, 2001)
+    inside = np.hypot(x + vx * times, y + vy * times) < reach
+    if at < math.inf:
+        assert begin <= at <= begin + span
+        assert math.hypot(x + vx * at, y + vy * at) < reach + 1e-6
+        assert not inside[times < at - 1e-6].any()
+    else:
+        assert not inside[
+            (times > begin) & (np.hypot(x + vx * times, y + vy * times) < reach - 1e-6)
+        ].any()
+
+
+@given(st.floats(-2, 2))
+def test_half_turns(half):
+    cos, sin, sinc = stop_kernels.half_turn(half)
+    assert cos == pytest.approx(math.cos(half), abs=1e-12)
+    assert sin == pytest.approx(math.sin(half), abs=1e-12)
+    assert sinc == pytest.approx(math.sin(half) / half if half else 1.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "footprint", [BOX, Footprint.polygon([(-0.2, -0.3), (0.5, 0.0), (-0.2, 0.3)])]
+)
+def test_the_discs_cover_a_polygon(footprint):
+    low, high = footprint.vertices.min(axis=0), footprint.vertices.max(axis=0)
+    rng = np.random.default_rng(0)
+    points = rng.uniform(low, high, (3000, 2))
+    inside = np.array([polygon_distance(footprint.vertices, *point) == 0.0 for point in points])
+    discs = footprint.discs
+    gaps = np.hypot(*(points[:, None] - discs[None, :, :2]).T).T - discs[:, 2]
+    assert inside.any()
+    assert (gaps.min(axis=1)[inside] <= 1e-9).all()
+    assert discs[:, 2].max() < footprint.circumscribed

@@ -15,13 +15,16 @@ def centre_clearance(field, x0, y0, resolution, x, y):
     resolution^2 / 4d between them, which is taken off.
     """
     rows, columns = field.shape
-    fx, fy = (x - x0) / resolution - 0.5, (y - y0) / resolution - 0.5
+    per_cell = 1.0 / resolution  # the same for all calls of a loop, which the compiler sees
+    fx, fy = (x - x0) * per_cell - 0.5, (y - y0) * per_cell - 0.5
     if not (0.0 <= fx < columns - 1.0 and 0.0 <= fy < rows - 1.0):
         return 0.0
     c, r = int(fx), int(fy)
     a, b = fx - c, fy - r
-    d = (1.0 - b) * ((1.0 - a) * field[r, c] + a * field[r, c + 1]) + b * (
-        (1.0 - a) * field[r + 1, c] + a * field[r + 1, c + 1]
+    above, below = field[np.uint64(r)], field[np.uint64(r + 1)]
+    i, j = np.uint64(c), np.uint64(c + 1)
+    d = (1.0 - b) * ((1.0 - a) * above[i] + a * above[j]) + b * (
+        (1.0 - a) * below[i] + a * below[j]
     )
     if d <= resolution:
         return max(0.0, d - 0.5 * resolution)
@@ -68,7 +71,7 @@ def footprint_clearance(around, body, enough, x, y, theta):
     metres: the circles decide first, then every closed cell near.
     """
     field, x0, y0, resolution, _ = around
-    vertices, inscribed, circumscribed = body
+    vertices, _, inscribed, circumscribed = body
     d = centre_clearance(field, x0, y0, resolution, x, y)
     if len(vertices) == 0 or d - circumscribed >= enough:
         return d - circumscribed
@@ -84,11 +87,28 @@ def footprint_clearance(around, body, enough, x, y, theta):
     best = enough
     for row in range(first, last + 1):
         dy = y0 + (row + 0.5) * resolution - y
-        for column in range(low, high + 1):
-            if field[row, column] > 0.0:
+        column = low
+        while column <= high:
+            distance = field[row, column]
+            if distance > 0.0:  # nothing is closed nearer than that
+                column += max(1, int(distance / resolution))
                 continue
             dx = x0 + (column + 0.5) * resolution - x
             best = min(best, polygon_distance(vertices, cos * dx + sin * dy, cos * dy - sin * dx))
             if best <= 0.0:
                 return 0.0
+            column += 1
     return best
+
+
+@njit(cache=True)
+def covered_clearance(around, body, x, y, theta):
+    """A lower bound of ``footprint_clearance`` from the discs that cover a polygon, -inf without any."""
+    field, x0, y0, resolution, _ = around
+    cos, sin = math.cos(theta), math.sin(theta)
+    least = np.inf if len(body.discs) else -np.inf
+    for i in range(len(body.discs)):
+        dx, dy, radius = body.discs[i]
+        px, py = x + cos * dx - sin * dy, y + sin * dx + cos * dy
+        least = min(least, centre_clearance(field, x0, y0, resolution, px, py) - radius)
+    return least

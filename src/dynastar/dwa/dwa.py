@@ -42,6 +42,7 @@ class Body(NamedTuple):
     """A footprint as the kernels take it, see ``Footprint``."""
 
     vertices: Floats
+    discs: Floats
     inscribed: float
     circumscribed: float
 
@@ -49,7 +50,7 @@ class Body(NamedTuple):
 def body_of(robot: Robot) -> Body:
     """A robot's footprint for the kernels."""
     shape = robot.footprint
-    return Body(shape.vertices, shape.inscribed, shape.circumscribed)
+    return Body(shape.vertices, shape.discs, shape.inscribed, shape.circumscribed)
 
 
 class Wish(NamedTuple):

@@ -6,7 +6,7 @@ import numpy as np
 
 from dynastar.compiled import njit
 from dynastar.dwa.clearance_kernels import centre_clearance
-from dynastar.dwa.stop_kernels import ADMISSIBLE, CONTACT, MOVER, arc
+from dynastar.dwa.stop_kernels import ADMISSIBLE, CONTACT, MOVER, half_turn
 
 HEADING, DIST, VEL, SIMI = range(4)
 
@@ -30,7 +30,11 @@ def roll_out(sample, state, span, around, body, margins, allowed, ahead, wish, l
     must = reach + 0.5 * stop  # holding the speeds for half the stopping time covers the stop's arc
     total = max(steps, int(math.ceil(must / h)))
     target_gap = math.hypot(wish.target_x - x, wish.target_y - y)
+    nearest = min(margin, allowed) - 1e-6
+    moves = abs(sample_v) > 0.0 or abs(v0) > 0.0
+    per_spacing = 1.0 / spacing
     px, py, ptheta = x, y, theta
+    cos, sin = math.cos(theta), math.sin(theta)
     length = 0.0
     least = end_clearance = np.inf
     strayed = 0.0
@@ -41,37 +45,37 @@ def roll_out(sample, state, span, around, body, margins, allowed, ahead, wish, l
         share = min(1.0, t / reach) if reach > 0.0 else 1.0
         v = v0 + share * (sample_v - v0)
         w = omega0 + share * (sample_w - omega0)
-        px, py, ptheta = arc(px, py, ptheta, v * h, w * h)
+        half_cos, half_sin, sinc = half_turn(0.5 * w * h)
+        mid_cos, mid_sin = cos * half_cos - sin * half_sin, sin * half_cos + cos * half_sin
+        cos, sin = mid_cos * half_cos - mid_sin * half_sin, mid_sin * half_cos + mid_cos * half_sin
+        px, py, ptheta = px + v * h * sinc * mid_cos, py + v * h * sinc * mid_sin, ptheta + w * h
         length += abs(v) * h
         clear = centre_clearance(field, x0, y0, resolution, px, py) - radius
-        if clear < min(margin, allowed) - 1e-6 and k * h <= must:
+        if clear < nearest and k * h <= must:
             return CONTACT
         if k > steps:
             continue
         clear = max(0.0, clear - margin)
+        after = ahead + k * h
         for m in range(len(movers)):
-            after = ahead + k * h
-            gap = (
-                math.hypot(
-                    movers[m, 0] + movers[m, 2] * after - px,
-                    movers[m, 1] + movers[m, 3] * after - py,
-                )
-                - radius
-                - movers[m, 4]
-                - margins.movers
-            )
-            if gap <= 0.0 and k * h <= must + 0.5 * stop and (abs(sample_v) > 0.0 or abs(v0) > 0.0):
+            dx = movers[m, 0] + movers[m, 2] * after - px
+            dy = movers[m, 1] + movers[m, 3] * after - py
+            need = radius + movers[m, 4] + margins.movers
+            if dx * dx + dy * dy >= (need + clear) * (need + clear):
+                continue
+            gap = math.sqrt(dx * dx + dy * dy) - need
+            if gap <= 0.0 and k * h <= must + 0.5 * stop and moves:
                 return MOVER
             clear = min(clear, max(0.0, gap))
         least = min(least, clear)
         end_clearance = clear
-        i = int(length / spacing)
+        part = length * per_spacing
+        i = int(part)
         if i < len(path) - 1:  # beyond its end there is nothing to follow
-            part = length / spacing - i
-            strayed += math.hypot(
-                px - (1.0 - part) * path[i, 0] - part * path[i + 1, 0],
-                py - (1.0 - part) * path[i, 1] - part * path[i + 1, 1],
-            )
+            part -= i
+            dx = px - (1.0 - part) * path[i, 0] - part * path[i + 1, 0]
+            dy = py - (1.0 - part) * path[i, 1] - part * path[i + 1, 1]
+            strayed += math.sqrt(dx * dx + dy * dy)
             followed += 1
         if length <= 0.5 * target_gap:
             aim_x, aim_y, aim_theta = px, py, ptheta

@@ -5,10 +5,12 @@ import math
 import numpy as np
 
 from dynastar.compiled import njit
-from dynastar.dwa.clearance_kernels import footprint_clearance
+from dynastar.dwa.clearance_kernels import covered_clearance, footprint_clearance
 
 ADMISSIBLE, NO_STOP, CONTACT, MOVER, RUN_OVER = 0, 1, 2, 3, 4
 TICK = 0.15  # s between the looks at where movers are
+SIN = (-1 / 6, 1 / 120, -1 / 5040, 1 / 362880)  # of the series of sin(q) / q and of cos(q), in q^2
+COS = (-1 / 2, 1 / 24, -1 / 720, 1 / 40320, -1 / 3628800)
 WAYS = (1.0, 0.0, -1.0)  # a mover keeps its velocity, stands, or turns back
 
 
@@ -32,6 +34,17 @@ def arc(x, y, theta, length, angle):
     return x + chord * math.cos(theta + half), y + chord * math.sin(theta + half), theta + angle
 
 
+@njit(cache=True, inline="always")
+def half_turn(half):
+    """cos(half), sin(half) and sin(half) / half; a series of 1e-13 for the small turns of one step."""
+    if abs(half) > 0.3:
+        return math.cos(half), math.sin(half), math.sin(half) / half
+    q = half * half
+    sinc = 1.0 + q * (SIN[0] + q * (SIN[1] + q * (SIN[2] + q * SIN[3])))
+    cos = 1.0 + q * (COS[0] + q * (COS[1] + q * (COS[2] + q * (COS[3] + q * COS[4]))))
+    return cos, half * sinc, sinc
+
+
 @njit(cache=True)
 def arc_is_clear(around, body, margin, allowed, x, y, theta, length, angle):
     """Whether the footprint, grown by ``margin``, sweeps only open space along an arc.
@@ -47,7 +60,9 @@ def arc_is_clear(around, body, margin, allowed, x, y, theta, length, angle):
     share = 0.0
     while True:
         px, py, ptheta = arc(x, y, theta, share * length, share * angle)
-        spare = footprint_clearance(around, body, enough, px, py, ptheta) - need
+        spare = covered_clearance(around, body, px, py, ptheta) - need
+        if spare < smallest:
+            spare = footprint_clearance(around, body, enough, px, py, ptheta) - need
         if spare < -1e-6:
             return False
         if share >= 1.0:
@@ -56,8 +71,18 @@ def arc_is_clear(around, body, margin, allowed, x, y, theta, length, angle):
 
 
 @njit(cache=True)
-def position_on_stop(state, v, omega, ramp, stop, t):
-    """(x, y) at ``t`` seconds: the speeds change to (v, omega) over ``ramp``, then to 0 over ``stop``."""
+def stop_from(state, v, omega, ramp):
+    """The pose at which the speeds have changed to (v, omega) over ``ramp`` seconds."""
+    x, y, theta, v0, omega0 = state
+    return arc(x, y, theta, ramp * 0.5 * (v0 + v), ramp * 0.5 * (omega0 + omega))
+
+
+@njit(cache=True)
+def position_on_stop(state, turned, v, omega, ramp, stop, t):
+    """(x, y) at ``t`` seconds: the speeds change to (v, omega) over ``ramp``, then to 0 over ``stop``.
+
+    ``turned`` is the pose between the two, from ``stop_from``.
+    """
     x, y, theta, v0, omega0 = state
     if t <= ramp:
         share = t / ramp if ramp > 0.0 else 1.0
@@ -65,11 +90,28 @@ def position_on_stop(state, v, omega, ramp, stop, t):
         angle = t * (omega0 + 0.5 * share * (omega - omega0))
         px, py, _ = arc(x, y, theta, length, angle)
         return px, py
-    x, y, theta = arc(x, y, theta, ramp * 0.5 * (v0 + v), ramp * 0.5 * (omega0 + omega))
     left = max(0.0, 1.0 - (t - ramp) / stop) if stop > 0.0 else 0.0
     done = 0.5 * stop * (1.0 - left * left)
-    px, py, _ = arc(x, y, theta, v * done, omega * done)
+    px, py, _ = arc(turned[0], turned[1], turned[2], v * done, omega * done)
     return px, py
+
+
+@njit(cache=True)
+def enters(x, y, vx, vy, reach, begin, end):
+    """When a point that is at (x, y) at 0 seconds comes within ``reach`` of the origin, from begin on.
+
+    inf if it does not before ``end``.
+    """
+    there_x, there_y = x + vx * begin, y + vy * begin
+    inside = there_x * there_x + there_y * there_y - reach * reach
+    if inside < 0.0:
+        return begin
+    square = vx * vx + vy * vy
+    nearing = there_x * vx + there_y * vy
+    if nearing >= 0.0 or nearing * nearing <= square * inside:
+        return np.inf
+    at = begin - (nearing + math.sqrt(nearing * nearing - square * inside)) / square
+    return at if at <= end else np.inf
 
 
 @njit(cache=True)
@@ -80,28 +122,59 @@ def first_touch(movers, spread, radius, state, v, omega, ramp, stop, until, ahea
     (x, y, theta, v, omega) ``ahead`` seconds from now, changes to (v, omega) over ``ramp`` seconds
     and comes to rest in ``stop`` more. A mover may keep its velocity, stand or turn back, each with
     ``spread`` (m/s) more every second while the robot moves; one that is nearer than ``radius``
-    and its own already may not come nearer.
+    and its own already may not come nearer. While the robot moves it looks every ``TICK``; once it
+    rests the touch is where the mover's way enters the disc.
     """
     x, y = state[0], state[1]
+    turned = stop_from(state, v, omega, ramp)
     moves = min(ramp + stop, until)
-    n = max(2, int(math.ceil(until / TICK)))
-    for k in range(n + 1):
-        t = until * k / n
-        px, py = position_on_stop(state, v, omega, ramp, stop, t)
-        after = ahead + t
-        for m in range(len(movers)):
-            mx, my, vx, vy, size, top = movers[m]
-            need = radius + size
-            now = math.hypot(mx - x, my - y)
-            grown = need + spread * min(after, moves) if now >= need else now - 1e-4
-            speed = math.sqrt(vx * vx + vy * vy)
-            faster = max(top, speed) / speed if speed > 1e-3 else 0.0
-            for way in WAYS:
-                dx = mx + way * faster * vx * after - px
-                dy = my + way * faster * vy * after - py
-                if dx * dx + dy * dy < grown * grown:
-                    return t
-    return np.inf
+    travels = ramp * max(abs(state[3]), abs(v)) + 0.5 * stop * abs(v)
+    near, fastest = False, 0.0
+    for m in range(len(movers)):
+        mx, my, vx, vy, size, top = movers[m]
+        comes = max(top, math.sqrt(vx * vx + vy * vy))
+        fastest = max(fastest, comes)
+        most = radius + size + spread * moves + travels + comes * (ahead + moves)
+        near |= (mx - x) * (mx - x) + (my - y) * (my - y) < most * most
+    if near:
+        nearing = max(abs(state[3]), abs(v)) + fastest + spread + 1e-6
+        n = max(2, int(math.ceil(moves / TICK)))
+        k = 0
+        while k <= n:
+            t = moves * k / n
+            px, py = position_on_stop(state, turned, v, omega, ramp, stop, t)
+            after = ahead + t
+            spare = np.inf
+            for m in range(len(movers)):
+                mx, my, vx, vy, size, top = movers[m]
+                need = radius + size
+                now = math.sqrt((mx - x) * (mx - x) + (my - y) * (my - y))
+                grown = need + spread * min(after, moves) if now >= need else now - 1e-4
+                speed = math.sqrt(vx * vx + vy * vy)
+                faster = max(top, speed) / speed if speed > 1e-3 else 0.0
+                for way in WAYS:
+                    dx = mx + way * faster * vx * after - px
+                    dy = my + way * faster * vy * after - py
+                    if dx * dx + dy * dy < grown * grown:
+                        return t
+                    spare = min(spare, math.sqrt(dx * dx + dy * dy) - grown)
+            k += max(1, int(spare * n / (nearing * moves)))  # until then it cannot be used up
+    if until <= moves:
+        return np.inf
+    px, py = position_on_stop(state, turned, v, omega, ramp, stop, moves)
+    touch = np.inf
+    for m in range(len(movers)):
+        mx, my, vx, vy, size, top = movers[m]
+        need = radius + size
+        now = math.sqrt((mx - x) * (mx - x) + (my - y) * (my - y))
+        grown = need + spread * moves if now >= need else now - 1e-4
+        speed = math.sqrt(vx * vx + vy * vy)
+        faster = max(top, speed) / speed if speed > 1e-3 else 0.0
+        for way in WAYS:
+            ux, uy = way * faster * vx, way * faster * vy
+            at = enters(mx - px, my - py, ux, uy, grown, ahead + moves, ahead + until)
+            touch = min(touch, at - ahead)
+    return touch
 
 
 @njit(cache=True)

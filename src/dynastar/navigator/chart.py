@@ -8,9 +8,9 @@ import numpy.typing as npt
 from dynastar.clearance import inflate
 from dynastar.errors import GoalOccupied, NoPath, StartOccupied
 from dynastar.grid import OccupancyGrid
+from dynastar.navigator.chart_kernels import cells_under, seen_under
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.obstacles import Known, ObstacleLayer
-from dynastar.obstacles.layer import SEEN_FREE, SEEN_OCCUPIED
 from dynastar.planning import GridPlanner, Plan
 
 Mask = npt.NDArray[np.bool_]
@@ -57,10 +57,9 @@ class Chart:
             return False
         part = np.s_[low[0] : high[0], low[1] : high[1]]
         shape = (int(high[0] - low[0]), int(high[1] - low[1]))
-        occupied, free = np.zeros((2, shape[0] * shape[1] + 1), np.bool_)
-        occupied[below[layer.states == SEEN_OCCUPIED]] = True
-        free[below[layer.states == SEEN_FREE]] = True
-        occupied, free = occupied[:-1].reshape(shape), free[:-1].reshape(shape)
+        occupied, free = np.empty((2, shape[0] * shape[1]), np.bool_)
+        seen_under(layer.states, below, occupied, free)
+        occupied, free = occupied.reshape(shape), free.reshape(shape)
         occupied &= ~self.known.mask[part]
         seen = occupied | (self.seen[part] & ~free)
         cleared = (self.cleared[part] | free) & self._unknown[part]
@@ -124,19 +123,11 @@ class Chart:
         """
         if self._under is not None and self._under[0] == layer.origin:
             return self._under[1]
-        n, a = len(layer.states), layer.config.resolution
-        x0, y0 = layer.origin
-        rows, columns = np.mgrid[:n, :n]
-        points = np.column_stack(
-            [((columns + 0.5) * a + x0).ravel(), ((rows + 0.5) * a + y0).ravel()]
-        )
-        cells = np.floor(self.frame.points_to_grid(points)).astype(np.int64)
-        low = np.maximum(cells.min(axis=0), 0)
-        high = np.minimum(cells.max(axis=0) + 1, self.prior.shape)
-        size = np.maximum(high - low, 0)
-        inside = ((cells >= low) & (cells < high)).all(axis=1)
-        below = np.where(inside, (cells - low) @ np.array([size[1], 1]), size[0] * size[1])
-        self._under = layer.origin, (low, high, below.reshape(n, n))
+        window = cells_under(
+            len(layer.states), layer.config.resolution, *layer.origin,
+            *map(float, self.frame), *self.prior.shape,
+        )  # fmt: skip
+        self._under = layer.origin, window
         return self._under[1]
 
     def _mark(self, changed: Mask, low: npt.NDArray[np.int64]) -> None:

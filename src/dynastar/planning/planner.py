@@ -87,6 +87,9 @@ class GridPlanner:
         self._radius_cells = self.radius / grid.resolution
         self._blocked = mask_bytes(grid.blocked(unknown))
         self._search = SearchGrid(inflate(self._blocked, self._radius_cells))
+        self._stale: tuple[int, int, int, int] | None = (
+            None  # marked since: top, left, bottom, right
+        )
         warm_up()
 
     @property
@@ -99,22 +102,34 @@ class GridPlanner:
     @property
     def inflated(self) -> Mask:
         """Where the disc's centre may not be, [rows, columns]; a copy."""
+        self._inflate_stale()
         return self._search.occupied
 
     def mark(self, row0: int, col0: int, patch_blocked: npt.ArrayLike) -> None:
         """New truth for the window of the map at (row0, col0): true where something is now.
 
-        Only the window's surroundings are inflated anew. Raises OutOfMap if it leaves the map.
+        What follows from it is worked out in the window's surroundings when the next plan asks for
+        it. Raises OutOfMap if the window leaves the map.
         """
         patch = np.asarray(patch_blocked, dtype=bool)
-        whole = (self.grid.rows, self.grid.columns)
-        check_window(row0, col0, patch.shape, whole)
-        rows, columns = patch.shape
-        self._blocked[row0 : row0 + rows, col0 : col0 + columns] = patch
+        check_window(row0, col0, patch.shape, (self.grid.rows, self.grid.columns))
+        bottom, right = row0 + patch.shape[0], col0 + patch.shape[1]
+        self._blocked[row0:bottom, col0:right] = patch
+        if self._stale is not None:
+            top, left, low, side = self._stale
+            row0, col0 = min(row0, top), min(col0, left)
+            bottom, right = max(bottom, low), max(right, side)
+        self._stale = row0, col0, bottom, right
+
+    def _inflate_stale(self) -> None:
+        """Inflates anew what was marked since the last plan."""
+        if self._stale is None:
+            return
+        row0, col0, bottom, right = self._stale
+        self._stale = None
         reach = math.ceil(self._radius_cells + 0.5)
         top, left = max(row0 - reach, 0), max(col0 - reach, 0)
-        bottom = min(row0 + rows + reach, whole[0])
-        right = min(col0 + columns + reach, whole[1])
+        bottom, right = min(bottom + reach, self.grid.rows), min(right + reach, self.grid.columns)
         seen_top, seen_left = max(top - reach, 0), max(left - reach, 0)
         seen = inflate(
             self._blocked[seen_top : bottom + reach, seen_left : right + reach], self._radius_cells
@@ -132,6 +147,7 @@ class GridPlanner:
         StartOccupied, GoalOccupied or NoPath.
         """
         began = time.perf_counter()
+        self._inflate_stale()
         start, goal = self._point(start_xy, "start"), self._point(goal_xy, "goal")
         goal_cell = self._fitting_cell(goal)
         if goal_cell is None:
