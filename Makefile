@@ -3,18 +3,20 @@
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
+PEERS := benchmarks/.venv
 FIND_PYTHON = for python in python3.11 python3 python3.12 python3.13 python; do \
 	$$python -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2>/dev/null \
 	&& echo $$python && break; done
 
-.PHONY: help setup check test demo bench clean
+.PHONY: help setup check test demo suites bench clean
 
 help:
 	@echo "make setup   make .venv and install dynastar with its tools into it"
 	@echo "make demo    drive across the office; pictures and numbers in out/demo"
 	@echo "make test    run the tests (those on public data, too, where DYNASTAR_DATA has it)"
 	@echo "make check   ruff, mypy, import-linter"
-	@echo "make bench   the suites movingai (needs DYNASTAR_DATA) and paper; JSON in out/bench"
+	@echo "make suites  the suites movingai (needs DYNASTAR_DATA) and paper; JSON in out/suites"
+	@echo "make bench   how fast it is, beside others, in an environment of its own; text in out/bench"
 	@echo "make clean   remove .venv, out and caches"
 
 setup: $(STAMP)
@@ -39,12 +41,23 @@ test: setup
 demo: setup
 	$(BIN)/dynastar run examples/office/office.toml --out out/demo
 
-bench: setup
+suites: setup
+	@mkdir -p out/suites
+	$(BIN)/dynastar bench movingai --json-out out/suites/movingai.json
+	$(BIN)/dynastar bench paper --missions 500 --json-out out/suites/paper.json
+
+$(PEERS)/.installed: benchmarks/requirements.txt $(STAMP)
+	test -x $(PEERS)/bin/python || $(BIN)/python -m venv $(PEERS)
+	$(PEERS)/bin/python -m pip install --quiet --disable-pip-version-check -e . -r benchmarks/requirements.txt
+	@touch $@
+
+bench: $(PEERS)/.installed
 	@mkdir -p out/bench
-	$(BIN)/dynastar bench movingai --json-out out/bench/movingai.json
-	$(BIN)/dynastar bench paper --missions 500 --json-out out/bench/paper.json
+	for each in grids replanning heuristic memory tick startup; do echo "$$each:"; \
+	$(PEERS)/bin/python benchmarks/$$each.py $$(test $$each = grids -a -n "$$DYNASTAR_DATA" && \
+	echo --data "$$DYNASTAR_DATA") > out/bench/$$each.txt || exit 1; cat out/bench/$$each.txt; done
 
 clean:
-	rm -rf $(VENV) out build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(VENV) $(PEERS) out build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	rm -rf .import_linter_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -28,6 +28,9 @@ F_SHIFT = 29
 SERIAL_BITS = (1 << F_SHIFT) - 1
 MAX_F = (1 << 34) - 1
 
+EXP_STEPS = 256
+EXP = np.exp(np.arange(EXP_STEPS + 1) / EXP_STEPS)
+
 
 class Terms(NamedTuple):
     """Eq. 3 in the kernel's units; ``adaptive`` is false if h(n) and the weight are all there is.
@@ -54,6 +57,18 @@ def estimate(rows: int, columns: int, euclidean: bool) -> int:
     return octile(rows, columns)
 
 
+@njit(cache=True)
+def sum_up(near: Bytes, sums: npt.NDArray[np.int32]) -> None:
+    """Fills the summed-area table [rows + 1, columns + 1] of the blocked cells of a padded grid."""
+    sums[0] = 0
+    for y in range(1, sums.shape[0]):
+        along = 0
+        sums[y, 0] = 0
+        for x in range(1, sums.shape[1]):
+            along += near[y, x] == 0
+            sums[y, x] = sums[y - 1, x] + along
+
+
 @njit(cache=True, inline="always")
 def occupied_in(sums: Ints, y: int, x: int, other_y: int, other_x: int) -> int:
     """Occupied cells in the rectangle that two cells (padded coordinates) span."""
@@ -62,26 +77,32 @@ def occupied_in(sums: Ints, y: int, x: int, other_y: int, other_x: int) -> int:
     return sums[bottom, right] - sums[top, right] - sums[bottom, left] + sums[top, left]
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
+def exponential(ratio: float) -> float:
+    """e^ratio for a ratio from 0 to 1, to the last digit but one: a table and four terms."""
+    i = int(ratio * EXP_STEPS)
+    rest = ratio - i / EXP_STEPS
+    series = 1.0 + rest * (1.0 + rest * (0.5 + rest * (1.0 / 6.0 + rest * (1.0 / 24.0))))
+    return EXP[i] * series
+
+
+@njit(cache=True, inline="always")
 def h_adaptive(
-    terms: Terms, sums: Ints, n: tuple[int, int], parent: tuple[int, int],
+    terms: Terms, sums: Ints, n: tuple[int, int], h_parent: float,
     start: tuple[int, int], goal: tuple[int, int],
 ) -> float:  # fmt: skip
-    """h_A(n) of Eq. 2, not below 0; cells are (y, x) in padded coordinates."""
+    """h_A(n) of Eq. 2, not below 0; cells are (y, x) in padded coordinates, ``h_parent`` is h(p)."""
     y, x = n
     to_goal_y, to_goal_x = goal[0] - y, goal[1] - x
-    value = float(estimate(to_goal_y, to_goal_x, terms.euclidean))
-    if terms.parent:
-        value += estimate(goal[0] - parent[0], goal[1] - parent[1], terms.euclidean)
+    value = float(estimate(to_goal_y, to_goal_x, terms.euclidean)) + h_parent
     if terms.k != 0.0:
         from_start_y, from_start_x = y - start[0], x - start[1]
-        norms = math.sqrt(
-            float(from_start_y * from_start_y + from_start_x * from_start_x)
-            * float(to_goal_y * to_goal_y + to_goal_x * to_goal_x)
+        norms = float(from_start_y * from_start_y + from_start_x * from_start_x) * float(
+            to_goal_y * to_goal_y + to_goal_x * to_goal_x
         )
         if norms > 0.0:
             dot = from_start_y * to_goal_y + from_start_x * to_goal_x
-            value -= terms.k * dot / norms
+            value -= terms.k * dot / math.sqrt(norms)
         else:
             value -= abs(terms.k)
     if terms.exponential:
@@ -92,7 +113,7 @@ def h_adaptive(
             )
         else:
             p = occupied_in(sums, y, x, goal[0], goal[1])
-        value *= math.exp(min(p / terms.q, 1.0))
+        value *= exponential(min(p / terms.q, 1.0))
     return max(value, 0.0)
 
 
@@ -157,6 +178,9 @@ def search(
         g = label >> G_SHIFT
         y = node // width
         x = node - y * width
+        h_parent = 0.0
+        if terms.parent:
+            h_parent = float(estimate(goal_cell[0] - y, goal_cell[1] - x, terms.euclidean))
         untried = np.uint64(LEGAL[near[node]])
         while untried != 0:
             d = trailing_zeros(untried)
@@ -169,7 +193,7 @@ def search(
             labels[neighbour] = g_new << G_SHIFT | tag | d << DIRECTION_SHIFT
             n = (y + ROW_STEP[d], x + COLUMN_STEP[d])
             if terms.adaptive:
-                h = h_adaptive(terms, sums, n, (y, x), start_cell, goal_cell)
+                h = h_adaptive(terms, sums, n, h_parent, start_cell, goal_cell)
             else:
                 h = float(estimate(goal_cell[0] - n[0], goal_cell[1] - n[1], terms.euclidean))
             f = min(g_new + np.int64(terms.weight * h), MAX_F)

@@ -29,20 +29,17 @@ Words = npt.NDArray[np.uint64]
 TOP = np.uint64(63)
 
 
-@njit(cache=True)
-def pack(near: Bytes, rows: Words, top: int, left: int, bottom: int, right: int) -> None:
-    """Sets the bits of ``rows`` [y, words] where cells of ``near`` [y, x] are blocked, in a window.
+def pack(near: Bytes, lines: Words, top: int, left: int, bottom: int, right: int) -> None:
+    """Sets the bits of ``lines`` [y, words] where cells of ``near`` [y, x] are blocked, in a window.
 
     Beyond the last column everything is blocked. The window ends before ``bottom``, ``right``.
     """
-    for i in range(left >> 6, ((right - 1) >> 6) + 1):
-        for y in range(top, bottom):
-            word = np.uint64(0)
-            for bit in range(64):
-                x = (i << 6) + bit
-                if x >= near.shape[1] or near[y, x] == 0:
-                    word |= ONE << np.uint64(bit)
-            rows[y, i] = word
+    first, last = left >> 6, ((right - 1) >> 6) + 1
+    part = np.ascontiguousarray(near[top:bottom, 64 * first : 64 * last])
+    blocked = np.ones((bottom - top, 64 * (last - first)), np.bool_)
+    np.equal(part, 0, out=blocked[:, : part.shape[1]])
+    bits = np.packbits(blocked, axis=1, bitorder="little")
+    lines[top:bottom, first:last] = bits.view("<u8")
 
 
 @njit(cache=True, inline="always")

@@ -77,9 +77,8 @@ class SearchGrid:
     def sums(self) -> npt.NDArray[np.int32]:
         """Summed-area table [rows + 1, columns + 1]: occupied in the first i rows, j columns."""
         if self._sums is None:
-            sums = np.zeros((self.rows + 1, self.columns + 1), np.int32)
-            np.cumsum(self.occupied, axis=1, dtype=np.int32, out=sums[1:, 1:])
-            np.cumsum(sums[1:, 1:], axis=0, out=sums[1:, 1:])
+            sums = np.empty((self.rows + 1, self.columns + 1), np.int32)
+            heap_kernel.sum_up(self._near, sums)
             self._sums = sums
         return self._sums
 

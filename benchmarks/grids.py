@@ -1,0 +1,155 @@
+"""Grid search beside the planners that a user could pick instead: ``python benchmarks/grids.py --help``.
+
+Every contender gets the same maps and queries, in turns, warm, one thread, and the best of its times
+counts. nano_astar solves the same task (octile, no corner cutting), so its lengths have to be ours;
+pyastar2d charges 1 for a diagonal step and cuts corners, tcod and scikit-image cut corners: theirs are
+other tasks, and the table says so. Peers that are not installed are left out.
+"""
+
+import argparse
+import json
+import math
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from maps import Case, cases
+
+from dynastar.planning import SearchGrid
+
+ROUNDS, REPEATS = 2, 4  # in a row, so that everybody finds the caches warm
+Query = tuple[tuple[int, int], tuple[int, int]]
+
+
+def ours(case: Case) -> dict[str, Callable[[Query], float | None]]:
+    """dynastar's kernels on one prepared grid, and everything from the raw array."""
+    grid = SearchGrid(case.occupied)
+
+    def by(algorithm: str) -> Callable[[Query], float | None]:
+        return lambda query: grid.search(*query, algorithm).cost
+
+    return {
+        "astar": by("astar"),
+        "jump": by("jump"),
+        "auto": by("auto"),
+        "one shot": lambda query: SearchGrid(case.occupied).search(*query, "auto").cost,
+    }
+
+
+def peers(case: Case) -> dict[str, Callable[[Query], float | None]]:
+    """The peers that are installed; each returns the length if its task is the same, else None."""
+    found: dict[str, Callable[[Query], float | None]] = {}
+    try:
+        import nano_astar
+
+        bytes_ = case.occupied.astype(np.uint8)
+        found["nano_astar"] = lambda query: nano_astar.astar(bytes_, *query)[1]
+    except ImportError:
+        pass
+    try:
+        import pyastar2d
+
+        weights = np.where(case.occupied, np.inf, 1.0).astype(np.float32)
+
+        def two_d(query: Query) -> None:
+            assert pyastar2d.astar_path(weights, *query, allow_diagonal=True) is not None
+
+        found["pyastar2d (other task)"] = two_d
+    except ImportError:
+        pass
+    try:
+        import tcod.path
+
+        free = (~case.occupied).astype(np.int8)
+
+        def roguelike(query: Query) -> None:
+            graph = tcod.path.SimpleGraph(cost=free, cardinal=985, diagonal=1393)
+            finder = tcod.path.Pathfinder(graph)
+            finder.add_root(query[0])
+            assert len(finder.path_to(query[1]))
+
+        found["tcod (other task)"] = roguelike
+    except ImportError:
+        pass
+    try:
+        from skimage.graph import route_through_array
+
+        costs = np.where(case.occupied, -1.0, 1.0)
+
+        def image(query: Query) -> None:
+            path, _ = route_through_array(costs, *query, fully_connected=True, geometric=True)
+            assert path
+
+        found["scikit-image (other task)"] = image
+    except ImportError:
+        pass
+    return found
+
+
+def measure(case: Case, quick: bool) -> dict[str, Any]:
+    """Seconds by contender, summed over the case's queries, the best of some runs each."""
+    contenders = ours(case) | peers(case)
+    if quick:
+        contenders = {k: v for k, v in contenders.items() if "other task" not in k}
+    took = dict.fromkeys(contenders, 0.0)
+    for query in case.queries:
+        best = dict.fromkeys(contenders, math.inf)
+        lengths: dict[str, float | None] = {}
+        for _ in range(ROUNDS):
+            for name, run in contenders.items():
+                for _ in range(REPEATS if best[name] < 0.2 else 1):
+                    began = time.perf_counter()
+                    lengths[name] = run(query)
+                    best[name] = min(best[name], time.perf_counter() - began)
+        same = [length for length in lengths.values() if length is not None]
+        assert max(same) - min(same) < 1e-3, (case.name, query, lengths)
+        for name, seconds in best.items():
+            took[name] += seconds
+    return {"kind": case.kind, "map": case.name, "size": max(case.occupied.shape), "seconds": took}
+
+
+def mean(ratios: list[float]) -> float:
+    """The geometric mean."""
+    return math.exp(sum(map(math.log, ratios)) / len(ratios)) if ratios else math.nan
+
+
+def main() -> None:
+    """Measures and prints the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--data", type=Path, help="a folder with MovingAI maps")
+    parser.add_argument("--largest", type=int, default=4096, help="leave out larger maps")
+    parser.add_argument("--quick", action="store_true", help="nano_astar alone")
+    parser.add_argument("--json-out", type=Path)
+    chosen = parser.parse_args()
+    rows = []
+    for case in cases(chosen.data):
+        if max(case.occupied.shape) <= chosen.largest:
+            rows.append(measure(case, chosen.quick))
+            seconds = rows[-1]["seconds"]
+            base = seconds.get("nano_astar", math.nan)
+            shown = "  ".join(f"{name} {s / base:.3f}" for name, s in seconds.items())
+            print(f"{case.kind:9}{case.name:22}{1e3 * base / len(case.queries):9.2f} ms  {shown}")
+    print()
+    kinds = [*dict.fromkeys(row["kind"] for row in rows), "all"]
+    print(f"{'/ nano_astar':28}" + "".join(f"{kind:>10}" for kind in kinds) + f"{'worst':>10}")
+    for name in [n for n in rows[0]["seconds"] if n != "nano_astar"]:
+        line, worst = f"{name:28}", 0.0
+        for kind in kinds:
+            ratios = [
+                row["seconds"][name] / row["seconds"]["nano_astar"]
+                for row in rows
+                if kind in (row["kind"], "all") and (name != "one shot" or row["size"] >= 256)
+            ]
+            worst = max(worst, *ratios)
+            line += f"{mean(ratios):10.3f}"
+        print(line + f"{worst:10.3f}")
+    fits = [r["seconds"]["auto"] / min(r["seconds"]["astar"], r["seconds"]["jump"]) for r in rows]
+    print(f"auto / the better kernel: {mean(fits):.3f}, worst {max(fits):.3f}")
+    if chosen.json_out:
+        chosen.json_out.write_text(json.dumps(rows, indent=1))
+
+
+if __name__ == "__main__":
+    main()
