@@ -184,6 +184,7 @@ def test_when_a_point_enters_a_disc(x, y, vx, vy, reach, begin, span):
 
 
 @given(st.floats(-2, 2))
+@settings(deadline=None)
 def test_half_turns(half):
     cos, sin, sinc = stop_kernels.half_turn(half)
     assert cos == pytest.approx(math.cos(half), abs=1e-12)
