@@ -16,7 +16,7 @@ help:
 	@echo "make test    run the tests (those on public data, too, where DYNASTAR_DATA has it)"
 	@echo "make check   ruff, mypy, import-linter"
 	@echo "make suites  the suites movingai (needs DYNASTAR_DATA) and paper; JSON in out/suites"
-	@echo "make bench   how fast it is, beside others, in an environment of its own; text in out/bench"
+	@echo "make bench   how fast it is, beside others, in an environment of its own"
 	@echo "make clean   remove .venv, out and caches"
 
 setup: $(STAMP)
@@ -52,10 +52,13 @@ $(PEERS)/.installed: benchmarks/requirements.txt $(STAMP)
 	@touch $@
 
 bench: $(PEERS)/.installed
-	@mkdir -p out/bench
-	for each in grids replanning heuristic memory tick startup; do echo "$$each:"; \
-	$(PEERS)/bin/python benchmarks/$$each.py $$(test $$each = grids -a -n "$$DYNASTAR_DATA" && \
-	echo --data "$$DYNASTAR_DATA") > out/bench/$$each.txt || exit 1; cat out/bench/$$each.txt; done
+	$(PEERS)/bin/python benchmarks/grids.py --quick $${DYNASTAR_DATA:+--data "$$DYNASTAR_DATA"}
+	$(PEERS)/bin/python benchmarks/grids.py --largest 512
+	$(PEERS)/bin/python benchmarks/replanning.py
+	$(PEERS)/bin/python benchmarks/heuristic.py
+	$(PEERS)/bin/python benchmarks/memory.py
+	$(PEERS)/bin/python benchmarks/tick.py
+	$(PEERS)/bin/python benchmarks/startup.py
 
 clean:
 	rm -rf $(VENV) $(PEERS) out build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis

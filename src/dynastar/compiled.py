@@ -46,7 +46,7 @@ from numba import njit, types  # noqa: E402
 from numba.core import event  # noqa: E402
 from numba.extending import intrinsic  # noqa: E402
 
-__all__ = ["announcer", "caches", "clear", "leading_zeros", "njit", "trailing_zeros"]
+__all__ = ["caches", "clear", "leading_zeros", "njit", "trailing_zeros"]
 
 
 class _Announcer(event.Listener):  # type: ignore[misc]
@@ -65,7 +65,7 @@ class _Announcer(event.Listener):  # type: ignore[misc]
             if sys.stderr.isatty():
                 self._bar = tqdm(total=ABOUT, desc=words, file=sys.stderr, leave=False)
             else:
-                print(f"{words}: about half a minute", file=sys.stderr)
+                print(f"{words}: about 40 s", file=sys.stderr)
         self.done += 1
         if self._bar is not None:
             self._bar.total = max(self._bar.total, self.done)
@@ -75,8 +75,7 @@ class _Announcer(event.Listener):  # type: ignore[misc]
         """Nothing to say."""
 
 
-announcer = _Announcer()
-event.register("numba:compile", announcer)
+event.register("numba:compile", _Announcer())
 
 
 @intrinsic

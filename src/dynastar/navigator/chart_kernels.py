@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from dynastar.compiled import njit
+from dynastar.obstacles.layer import SEEN_OCCUPIED, UNSEEN
 
 
 @njit(cache=True)
@@ -43,14 +44,14 @@ def cells_under(n, resolution, x0, y0, frame_resolution, frame_x, frame_y, yaw, 
 
 @njit(cache=True)
 def seen_under(states, index, occupied, free):
-    """Fills the flattened windows ``occupied`` and ``free`` from a layer's states, 2 and 1."""
+    """Fills the flattened windows ``occupied`` and ``free`` from a layer's states."""
     occupied[:] = False
     free[:] = False
     for i in range(states.shape[0]):
         for j in range(states.shape[1]):
             at = index[i, j]
-            if at < occupied.size and states[i, j] != 0:
-                if states[i, j] == 2:
+            if at < occupied.size and states[i, j] != UNSEEN:
+                if states[i, j] == SEEN_OCCUPIED:
                     occupied[at] = True
                 else:
                     free[at] = True

@@ -19,10 +19,10 @@ from dynastar.planning.labels import (
     STAMP_SHIFT,
     STRAIGHT,
     Ints,
-    grown,
     octile,
+    with_room,
 )  # fmt: skip
-from dynastar.planning.neighbours import COLUMN_STEP, NO_DIRECTION, ROW_STEP, Bytes
+from dynastar.planning.neighbours import CANONICAL, COLUMN_STEP, NO_DIRECTION, ROW_STEP, Bytes
 
 BUCKETS = 4096  # 64 words of 64 bits; more than two diagonals
 LAST = BUCKETS - 1
@@ -32,12 +32,12 @@ LOW_HALF = 0xFFFFFFFF
 
 @njit(cache=True)
 def shortest(
-    near: Bytes, table: Bytes, width: int, labels: Ints, stamp: int, start: int, goal: int,
+    near: Bytes, width: int, labels: Ints, stamp: int, start: int, goal: int,
     informed: bool, heads: npt.NDArray[np.int32], pool: Ints,
 ) -> tuple[bool, int, Ints]:  # fmt: skip
     """Expands from ``start`` until ``goal`` (-1: everything) is closed; the ways stay in ``labels``.
 
-    ``table`` is CANONICAL; without being ``informed`` it searches all round (Dijkstra). ``heads``
+    Without being ``informed`` it searches all round (Dijkstra). ``heads``
     and ``pool`` are room to work in. Returns whether the goal was found, how many nodes were
     expanded, and ``pool``, which may have grown.
     """
@@ -82,12 +82,11 @@ def shortest(
         expanded += 1
         if node == goal:
             return True, expanded, pool
-        if used + 8 > pool.size:
-            pool = grown(pool)
+        pool = with_room(pool, used + 8)
         g = label >> G_SHIFT
         y = np.int64((node + 0.5) * per_width)
         x = node - y * width
-        untried = np.uint64(table[((label >> DIRECTION_SHIFT) & 15) << 8 | near[node]])
+        untried = np.uint64(CANONICAL[((label >> DIRECTION_SHIFT) & 15) << 8 | near[node]])
         while untried != 0:
             d = trailing_zeros(untried)
             untried &= untried - ONE

@@ -19,8 +19,8 @@ from dynastar.planning.labels import (
     STAMP_SHIFT,
     STRAIGHT,
     Ints,
-    grown,
     octile,
+    with_room,
 )  # fmt: skip
 from dynastar.planning.neighbours import COLUMN_STEP, LEGAL, NO_DIRECTION, ROW_STEP, Bytes
 
@@ -171,10 +171,7 @@ def search(
         expanded += 1
         if node == goal:
             return True, expanded, heap, nodes
-        if size + 8 > heap.size:
-            heap = grown(heap)
-        if serial + 8 > nodes.size:
-            nodes = grown(nodes)
+        heap, nodes = with_room(heap, size + 8), with_room(nodes, serial + 8)
         g = label >> G_SHIFT
         y = node // width
         x = node - y * width

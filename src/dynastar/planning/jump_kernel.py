@@ -19,10 +19,17 @@ from dynastar.planning.labels import (
     STAMP_SHIFT,
     STRAIGHT,
     Ints,
-    grown,
     octile,
+    with_room,
 )  # fmt: skip
-from dynastar.planning.neighbours import COLUMN_STEP, LEGAL, NO_DIRECTION, ROW_STEP, Bytes
+from dynastar.planning.neighbours import (
+    CANONICAL,
+    COLUMN_STEP,
+    LEGAL,
+    NO_DIRECTION,
+    ROW_STEP,
+    Bytes,
+)
 
 Words = npt.NDArray[np.uint64]
 
@@ -130,7 +137,7 @@ def enter(
 
 @njit(cache=True)
 def jump_search(
-    near: Bytes, table: Bytes, rows: Words, columns: Words, width: int, labels: Ints, stamp: int,
+    near: Bytes, rows: Words, columns: Words, width: int, labels: Ints, stamp: int,
     start: int, goal: int, heap: Ints, nodes: npt.NDArray[np.int32],
 ) -> tuple[bool, int, Ints, npt.NDArray[np.int32]]:  # fmt: skip
     """Expands jump points from ``start`` until ``goal`` is closed; the ways stay in ``labels``.
@@ -145,10 +152,6 @@ def jump_search(
     goal_y, goal_x = goal // width, goal % width
     most = 8 * max(len(rows), len(columns))  # that one node can enter
     labels[start] = tag | NO_DIRECTION << DIRECTION_SHIFT
-    while heap.size < most:
-        heap = grown(heap)
-    while nodes.size < most:
-        nodes = grown(nodes)
     nodes[0] = start
     heap[0] = SERIAL_BITS
     size, serial, expanded = 1, 1, 0
@@ -162,13 +165,10 @@ def jump_search(
         expanded += 1
         if node == goal:
             return True, expanded, heap, nodes
-        while size + most > heap.size:
-            heap = grown(heap)
-        while serial + most > nodes.size:
-            nodes = grown(nodes)
+        heap, nodes = with_room(heap, size + most), with_room(nodes, serial + most)
         g = label >> G_SHIFT
         y, x = node // width, node % width
-        untried = np.uint64(table[((label >> DIRECTION_SHIFT) & 15) << 8 | near[node]])
+        untried = np.uint64(CANONICAL[((label >> DIRECTION_SHIFT) & 15) << 8 | near[node]])
         while untried != 0:
             d = trailing_zeros(untried)
             untried &= untried - ONE

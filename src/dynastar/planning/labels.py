@@ -33,9 +33,11 @@ def octile(rows: int, columns: int) -> int:
 
 
 @njit(cache=True)
-def grown(array: Ints) -> Ints:
-    """The same array with half as much room again."""
-    larger = np.empty(array.size + array.size // 2, array.dtype)
+def with_room(array: Ints, needed: int) -> Ints:
+    """The array, or if it has not the ``needed`` room the same with half as much again or more."""
+    if needed <= array.size:
+        return array
+    larger = np.empty(max(needed, array.size + array.size // 2), array.dtype)
     larger[: array.size] = array
     return larger
 
@@ -57,8 +59,7 @@ def trace(labels: Ints, stamp: int, width: int, goal: int) -> tuple[npt.NDArray[
             break
         g, cost = labels[node] >> G_SHIFT, DIAGONAL if d & 1 else STRAIGHT
         while True:
-            if count + 1 >= way.size:
-                way = grown(way)
+            way = with_room(way, count + 2)
             way[count] = node
             count, diagonals = count + 1, diagonals + (d & 1)
             node -= steps[d]

@@ -18,8 +18,6 @@ ROW_STEP = np.array([1, 1, 0, -1, -1, -1, 0, 1])
 COLUMN_STEP = np.array([0, 1, 1, 1, 0, -1, -1, -1])
 NO_DIRECTION = 8  # how a start was reached
 
-LONELY = 0b10  # ``near`` of a free cell with nothing free round it
-
 
 def legal_steps(near: int) -> int:
     """Bits of the directions that can be taken from a cell."""
@@ -86,10 +84,10 @@ def find_near(blocked: Bytes, near: Bytes) -> None:
 
 
 @njit(cache=True)
-def count_turns(near: Bytes, turns: Bytes, stride: int) -> tuple[int, int]:
-    """Of every ``stride``-th node, how many are free, and the sum of ``turns[near]`` over them."""
+def count_turns(near: Bytes, stride: int) -> tuple[int, int]:
+    """Of every ``stride``-th node, how many are free, and the sum of their ``TURNS``."""
     free = total = 0
     for node in range(0, near.size, stride):
         free += near[node] != 0
-        total += turns[near[node]]
+        total += TURNS[near[node]]
     return free, total

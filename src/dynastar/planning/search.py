@@ -9,7 +9,7 @@ from dynastar.config import choose
 from dynastar.errors import GoalOccupied, MapError, NoPath, OutOfMap, StartOccupied
 from dynastar.planning import bucket_kernel, heap_kernel, jump_kernel, labels
 from dynastar.planning.heuristic import PLANNERS, HeuristicConfig, kernel_terms
-from dynastar.planning.neighbours import CANONICAL, TURNS, count_turns, find_near
+from dynastar.planning.neighbours import count_turns, find_near
 
 Cells = npt.NDArray[np.int32]
 Cell = tuple[int, int]
@@ -137,8 +137,10 @@ class SearchGrid:
 
         dijkstra, astar, jump and auto find the shortest way of the 8-connected grid, within 3e-7 of
         its length: all round, towards the goal, by jump points, or as fits the map. weighted and
-        improved are Eqs. 2-3 with the terms of ``heuristic``. Raises OutOfMap, StartOccupied,
-        GoalOccupied or NoPath; ConfigError for an unknown name.
+        improved are Eqs. 2-3 with the terms of ``heuristic``; weighted with a weight of 1 is the
+        traditional A* on the improved one's kernel, as an ablation wants it.
+
+        Raises OutOfMap, StartOccupied, GoalOccupied or NoPath; ConfigError for an unknown name.
         """
         choose(algorithm, ALGORITHMS, "planner")
         start, goal = self._inside(start_rc, "start"), self._inside(goal_rc, "goal")
@@ -150,7 +152,7 @@ class SearchGrid:
         if not found:
             raise NoPath(
                 f"no way leads from cell {start} to cell {goal}: "
-                f"the {expanded} cells that can be reached from the start do not hold the goal"
+                f"it is not among the {expanded} cells that were expanded"
             )
         cells, cost = self._trace(goal)
         return SearchResult(cells, cost, expanded, self.expanded_cells() if explored else None)
@@ -194,13 +196,13 @@ class SearchGrid:
             algorithm = "jump" if self._prefers_jumps() else "astar"
         if algorithm == "jump":
             found, expanded, self._pool, self._nodes = jump_kernel.jump_search(
-                near, CANONICAL, *self.lines, *where, self._pool, self._nodes
+                near, *self.lines, *where, self._pool, self._nodes
             )
             return found, expanded
         terms = PLANNERS[algorithm](heuristic)
         if algorithm in ("dijkstra", "astar") and terms.estimate == "octile":
             found, expanded, self._pool = bucket_kernel.shortest(
-                near, CANONICAL, *where, terms.weight > 0.0, self._heads, self._pool
+                near, *where, terms.weight > 0.0, self._heads, self._pool
             )
             return found, expanded
         sums = self.sums if terms.exponential else _NO_SUMS
@@ -214,7 +216,7 @@ class SearchGrid:
         """Whether the map has so few corners that jumping from one to the next is worth it."""
         if self._jumps is None:
             stride = max(1, self._near.size // SAMPLED) | 1
-            free, turns = count_turns(self._near.reshape(-1), TURNS, stride)
+            free, turns = count_turns(self._near.reshape(-1), stride)
             self._jumps = turns < JUMP_BELOW * free
         return self._jumps
 
