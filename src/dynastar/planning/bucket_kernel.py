@@ -82,7 +82,8 @@ def shortest(
         expanded += 1
         if node == goal:
             return True, expanded, pool
-        pool = with_room(pool, used + 8)
+        if used + 8 > pool.size:
+            pool = with_room(pool, used + 8)
         g = label >> G_SHIFT
         y = np.int64((node + 0.5) * per_width)
         x = node - y * width

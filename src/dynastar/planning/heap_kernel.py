@@ -171,7 +171,8 @@ def search(
         expanded += 1
         if node == goal:
             return True, expanded, heap, nodes
-        heap, nodes = with_room(heap, size + 8), with_room(nodes, serial + 8)
+        if size + 8 > heap.size or serial + 8 > nodes.size:
+            heap, nodes = with_room(heap, size + 8), with_room(nodes, serial + 8)
         g = label >> G_SHIFT
         y = node // width
         x = node - y * width

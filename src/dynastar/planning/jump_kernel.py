@@ -165,7 +165,8 @@ def jump_search(
         expanded += 1
         if node == goal:
             return True, expanded, heap, nodes
-        heap, nodes = with_room(heap, size + most), with_room(nodes, serial + most)
+        if size + most > heap.size or serial + most > nodes.size:
+            heap, nodes = with_room(heap, size + most), with_room(nodes, serial + most)
         g = label >> G_SHIFT
         y, x = node // width, node % width
         untried = np.uint64(CANONICAL[((label >> DIRECTION_SHIFT) & 15) << 8 | near[node]])

@@ -59,7 +59,8 @@ def trace(labels: Ints, stamp: int, width: int, goal: int) -> tuple[npt.NDArray[
             break
         g, cost = labels[node] >> G_SHIFT, DIAGONAL if d & 1 else STRAIGHT
         while True:
-            way = with_room(way, count + 2)
+            if count + 2 > way.size:
+                way = with_room(way, count + 2)
             way[count] = node
             count, diagonals = count + 1, diagonals + (d & 1)
             node -= steps[d]
