@@ -267,3 +267,19 @@ def spare_gap(movers, spread, radius, where, times, moves, ahead):
             gaps = np.hypot(*(at - where).T) - radius - r
             least = min(least, (gaps - spread * np.minimum(times + ahead, moves)).min())
     return least
+
+
+def observed_free(gaps, angle_min, increment, full_circle, sensor, centres):
+    """Whether points (k, 2) lie within their sector's gap (m), and whether on the verge of another."""
+    x, y, theta = sensor
+    dx, dy = centres[:, 0] - x, centres[:, 1] - y
+    distance = np.hypot(dx, dy)
+    turn = (np.arctan2(dy, dx) - theta - angle_min) * np.sign(increment)
+    sector = (turn % math.tau) / abs(increment)
+    n = len(gaps)
+    beam = np.minimum(sector.astype(int), n - 1)
+    seen = (sector < n) | full_circle
+    reach = np.where(seen, gaps[beam], 0.0)
+    past = np.minimum(np.abs(sector - np.round(sector)), math.tau / abs(increment) - sector)
+    across = past * abs(increment) * distance
+    return distance <= reach, (across < 1e-9) | (np.abs(distance - reach) < 1e-9)

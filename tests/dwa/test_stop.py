@@ -83,9 +83,10 @@ def test_clearance_off_the_window_is_none():
 def test_a_clear_arc_is_clear_everywhere(seed, theta, length, angle, footprint):
     field, centres = world(seed, 0.004)
     margin = 0.05
-    clear = stop_kernels.arc_is_clear(
-        round_about(field), body_of(footprint), margin, 1.0, 2.0, 2.0, theta, length, angle
-    )
+    around, body = round_about(field), body_of(footprint)
+    spare = footprint_clearance(around, body, 0.5, 2.0, 2.0, theta) - margin
+    left = stop_kernels.spare_after(spare, around, body, margin, 2.0, 2.0, theta, length, angle)
+    clear = left >= 0.0
     along = [
         true_clearance(
             centres,
@@ -96,6 +97,7 @@ def test_a_clear_arc_is_clear_everywhere(seed, theta, length, angle, footprint):
     ]
     if clear:
         assert min(along) >= margin - 0.25 * RESOLUTION
+        assert along[-1] >= margin + left - 1e-6
     else:
         assert min(along) <= margin + RESOLUTION
 
@@ -103,9 +105,10 @@ def test_a_clear_arc_is_clear_everywhere(seed, theta, length, angle, footprint):
 def certify(field, movers, v0, omega0, v, omega, period=0.1, linger=0.0):
     margins = Margins(standing=0.05, movers=0.1, spread=0.1, linger=linger)
     state = (2.0, 2.0, 0.0, v0, omega0)
-    around = round_about(field, movers)
+    around, body = round_about(field, movers), body_of(DISC)
+    allowed = footprint_clearance(around, body, 0.5, 2.0, 2.0, 0.0)
     return stop_kernels.certify(
-        around, body_of(DISC), margins, 1.0, 0.0, state, v, omega, LIMITS, period
+        around, body, margins, allowed, 0.0, state, v, omega, LIMITS, period
     )
 
 

@@ -2,13 +2,16 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from dynastar.geometry import Pose2D
 from dynastar.grid import OccupancyGrid
 from dynastar.obstacles import LayerConfig, ObstacleLayer
 from dynastar.obstacles.layer import SEEN_FREE, SEEN_OCCUPIED, UNSEEN
-from dynastar.obstacles.layer_kernels import scan_points
+from dynastar.obstacles.layer_kernels import NEVER, mark_free, scan_points
 from dynastar.scan import LaserScan
+from naive import observed_free
 
 N = 360
 
@@ -130,3 +133,36 @@ def test_keepout_is_closed_though_seen_free():
     a = layer.config.resolution
     row, column = math.floor(0.0 / a) - layer.row0, math.floor(1.7 / a) - layer.column0
     assert layer.open[row, column] == 0
+
+
+@given(
+    st.integers(0, 10**6),
+    st.sampled_from([2, 3, 4, 7, 90, 720]),
+    st.sampled_from([90.0, 180.0, 270.0, 360.0]),
+    st.booleans(),
+    st.booleans(),
+    st.floats(0.2, 4.0),
+)
+@settings(max_examples=150, deadline=None)
+def test_what_lies_between_two_beams_is_free_as_far_as_their_gap(
+    seed, n, fov, clockwise, squarely, far
+):
+    rng = np.random.default_rng(seed)
+    full = fov == 360.0
+    increment = math.radians(fov) / (n if full else n - 1) * (-1 if clockwise else 1)
+    if abs(increment) >= math.pi:
+        increment = math.copysign(3.0, increment)
+        full = False
+    gaps = rng.random(n) * far * (rng.random(n) < 0.9)
+    gaps[-1] *= full
+    sensor = (*rng.uniform(0.5, 4.5, 2), rng.uniform(-4, 4))
+    if squarely:  # on a cell's centre, beams along the axes
+        sensor = (2.525, 2.525, math.pi / 2 * int(rng.integers(4)))
+    free_at = np.full((100, 100), NEVER)
+    angle_min = -math.radians(fov) / 2
+    mark_free(free_at, 0.0, 0.0, 0.05, gaps, angle_min, increment, full, *sensor, 7.0)
+    rows, columns = np.indices(free_at.shape)
+    centres = np.column_stack([columns.ravel() * 0.05 + 0.025, rows.ravel() * 0.05 + 0.025])
+    free, verge = observed_free(gaps, angle_min, increment, full, sensor, centres)
+    assert ((free_at.ravel() == 7.0) == free)[~verge].all()
+    assert verge.mean() < 0.2

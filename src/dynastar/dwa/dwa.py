@@ -98,6 +98,21 @@ class Scoring(NamedTuple):
     turning: bool
 
 
+class Arcs(NamedTuple):
+    """Trajectories of one turning rate after each step (steps,), see ``rollout_kernels``.
+
+    What a speed of 1 held from the start drives (m per m/s) and what one that rises with ``share``
+    does, in the map's axes; the angle turned (rad) and the share of the way to the sample's speeds.
+    """
+
+    held_x: Floats
+    held_y: Floats
+    rise_x: Floats
+    rise_y: Floats
+    turned: Floats
+    share: Floats
+
+
 class Buffers(NamedTuple):
     """A window's arrays: samples and commands (n, 2), terms (n, 4), refusals and scores (n,)."""
 
@@ -106,6 +121,7 @@ class Buffers(NamedTuple):
     terms: Floats
     refused: npt.NDArray[np.int64]
     score: Floats
+    arcs: Arcs
 
 
 @dataclass(frozen=True)
@@ -154,12 +170,28 @@ class DynamicWindow:
         self._counts = n_v, n_w
         n = (n_v + 1) * (n_w + 1) + 1
         self._speeds, self._rates = np.empty(n_v + 1), np.empty(n_w + 1)
-        self._buffers = Buffers(
-            np.empty((n, 2)), np.empty((n, 2)), np.zeros((n, 4)), np.zeros(n, np.int64), np.empty(n)
-        )
         self._body = body_of(robot)
         self._span = Span(self.reach, float(config.horizon), int(config.steps))
+        self._buffers = Buffers(
+            np.empty((n, 2)),
+            np.empty((n, 2)),
+            np.zeros((n, 4)),
+            np.zeros(n, np.int64),
+            np.empty(n),
+            self._arcs_for(Twist(0.0, 0.0)),
+        )
         self._weights = np.array(config.weights, dtype=np.float64)
+
+    def _arcs_for(self, twist: Twist) -> Arcs:
+        """Room for the longest look ahead: over the horizon, and over a stop from the top speeds."""
+        limits = self.robot.limits
+        v, omega = (
+            max(limits.v_max, -limits.v_min, abs(twist.v)),
+            max(limits.omega_max, abs(twist.omega)),
+        )
+        must = self.reach + 0.5 * max(v / limits.v_brake, omega / limits.omega_brake)
+        steps = max(self._span.steps, math.ceil(must * self._span.steps / self._span.horizon) + 1)
+        return Arcs(*np.empty((len(Arcs._fields), steps)))
 
     def clearance(self, around: Surroundings, pose: Pose2D, enough: float = 0.5) -> float:
         """Metres, up to ``enough``, from the footprint to the nearest centre of a closed cell."""
@@ -201,7 +233,7 @@ class DynamicWindow:
         )
         v_best, v_scale = 0.0 if turning else limits.v_max, limits.v_max  # vel is v / v_max
         if config.normalisation == "window":
-            low, high = float(samples[0, 0]), float(samples[n - 2, 0])
+            low, high = float(samples[: n - 1, 0].min()), float(samples[: n - 1, 0].max())
             v_cap, v_scale = min(max(v_cap, low), high), max(high - low, 1e-6)
             v_best = v_cap
         cap = config.clearance_cap
@@ -222,6 +254,8 @@ class DynamicWindow:
             turning,
         )
         state = (*pose, *twist)
+        if abs(twist.v) > limits.v_max or abs(twist.omega) > limits.omega_max:  # as measured
+            self._buffers = self._buffers._replace(arcs=self._arcs_for(twist))
         allowed = self.clearance(around, pose, margins.standing + 0.1)
         best = window_kernels.evaluate(
             self._buffers,
@@ -273,7 +307,7 @@ class DynamicWindow:
         return None
 
     def _explain(self, best: int, n: int) -> Choice:
-        samples, commands, all_terms, all_refused, score = self._buffers
+        samples, commands, all_terms, all_refused, score, _ = self._buffers
         refused = all_refused[:n]
         counts = np.bincount(refused, minlength=max(REFUSALS) + 1)
         shares = dict.fromkeys(TERMS, 0.0)

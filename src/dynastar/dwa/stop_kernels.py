@@ -46,28 +46,26 @@ def half_turn(half):
 
 
 @njit(cache=True)
-def arc_is_clear(around, body, margin, allowed, x, y, theta, length, angle):
-    """Whether the footprint, grown by ``margin``, sweeps only open space along an arc.
+def spare_after(spare, around, body, need, x, y, theta, length, angle):
+    """What an arc leaves of ``spare`` (m, clearance beyond ``need``), negative if it is not clear.
 
     Conservative advancement: no point of the footprint moves further than |length| + R |angle|,
-    so a pose that has clearance to spare vouches for the stretch after it. A footprint that is
-    nearer than the margin to begin with (``allowed`` < margin) may not come nearer.
+    so a pose that has clearance to spare vouches for the stretch after it, over the arc's end, too.
     """
     sweep = abs(length) + body.circumscribed * abs(angle)
     smallest = 0.25 * around.resolution
-    enough = margin + 4.0 * around.resolution
-    need = min(margin, allowed)
+    enough = need + 4.0 * around.resolution
     share = 0.0
-    while True:
+    while spare < (1.0 - share) * sweep:
+        share = min(1.0, share + max(spare, smallest) / sweep)
         px, py, ptheta = arc(x, y, theta, share * length, share * angle)
         spare = covered_clearance(around, body, px, py, ptheta) - need
         if spare < smallest:
             spare = footprint_clearance(around, body, enough, px, py, ptheta) - need
         if spare < -1e-6:
-            return False
-        if share >= 1.0:
-            return True
-        share = min(1.0, share + max(spare, smallest) / sweep) if sweep > 1e-9 else 1.0
+            return spare
+        spare = max(0.0, spare)
+    return spare - (1.0 - share) * sweep
 
 
 @njit(cache=True)
@@ -183,26 +181,28 @@ def certify(around, body, margins, allowed, ahead, state, v, omega, limits, peri
 
     Over one period the speeds change, each at its own limit; then both ramp to zero in proportion,
     along one arc. ``allowed`` (m) is the clearance at the start, which is ``ahead`` seconds from
-    now. RUN_OVER: the robot could come to rest in time, and a mover would arrive there within the
-    margins' ``linger`` seconds.
+    now; a footprint that is nearer than the margin to begin with may not come nearer. RUN_OVER: the
+    robot could come to rest in time, and a mover would arrive there within the margins' ``linger``
+    seconds.
     """
     _, _, a_v, a_w, b_v, b_w, _ = limits
     parts = 2
     px, py, ptheta, now_v, now_w = state
+    need = min(margins.standing, allowed)
+    spare = allowed - need
     for _ in range(parts):
         next_v = slew(now_v, v, a_v, b_v, period / parts)
         next_w = slew(now_w, omega, a_w, b_w, period / parts)
         length = 0.5 * (now_v + next_v) * period / parts
         angle = 0.5 * (now_w + next_w) * period / parts
-        if not arc_is_clear(around, body, margins.standing, allowed, px, py, ptheta, length, angle):
+        spare = spare_after(spare, around, body, need, px, py, ptheta, length, angle)
+        if spare < 0.0:
             return NO_STOP
         px, py, ptheta = arc(px, py, ptheta, length, angle)
         now_v, now_w = next_v, next_w
     stop = max(abs(now_v) / b_v, abs(now_w) / b_w)
     length, angle = 0.5 * stop * now_v, 0.5 * stop * now_w
-    if stop > 0.0 and not arc_is_clear(
-        around, body, margins.standing, allowed, px, py, ptheta, length, angle
-    ):
+    if spare_after(spare, around, body, need, px, py, ptheta, length, angle) < 0.0:
         return NO_STOP
     if len(around.movers) == 0:
         return ADMISSIBLE

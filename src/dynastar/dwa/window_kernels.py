@@ -1,7 +1,7 @@
 """The window (Eqs. 5-7) and its evaluation in one pass over the samples."""
 
 from dynastar.compiled import njit
-from dynastar.dwa.rollout_kernels import normalise_and_choose, roll_out
+from dynastar.dwa.rollout_kernels import normalise_and_choose, roll_out, turn
 from dynastar.dwa.stop_kernels import (
     ADMISSIBLE,
     certify,
@@ -31,7 +31,7 @@ def sample_window(
     """V_m and V_d (Eqs. 5 and 6): the speeds reachable in ``reach`` seconds; returns how many samples.
 
     Above ``v_cap`` only braking is left. The last sample is the full brake, both speeds towards
-    zero in proportion.
+    zero in proportion. Samples of one turning rate come one after the other.
     """
     _, _, a_v, a_w, b_v, b_w, _ = limits
     low, high = slew(v, v_min, a_v, b_v, reach), slew(v, v_cap, a_v, b_v, reach)
@@ -39,8 +39,8 @@ def sample_window(
     low, high = slew(omega, -omega_cap, a_w, b_w, reach), slew(omega, omega_cap, a_w, b_w, reach)
     n_rates = axis(min(low, high), max(low, high), n_w, rates)
     k = 0
-    for i in range(n_speeds):
-        for j in range(n_rates):
+    for j in range(n_rates):
+        for i in range(n_speeds):
             samples[k, 0], samples[k, 1] = speeds[i], rates[j]
             k += 1
     stop = max(abs(v) / b_v, abs(omega) / b_w)
@@ -68,24 +68,37 @@ def evaluate(
 ):
     """Eqs. 7 to 9 over ``n`` samples; returns the index of the best admissible one, or -1.
 
-    The command of a sample is the next period's step towards it; it has to have a certified stop.
-    The groups are the NamedTuples of ``dwa.py``; ``allowed`` (m) is the clearance at the start,
-    which is ``ahead`` seconds from now.
+    Samples of one turning rate come in a row. The command of a sample is the next period's step
+    towards it; it has to have a certified stop. The groups are the NamedTuples of ``dwa.py``;
+    ``allowed`` (m) is the clearance at the start, which is ``ahead`` seconds from now.
     """
-    samples, commands, terms, refused, score = buffers
+    samples, commands, terms, refused, score, arcs = buffers
     _, _, a_v, a_w, b_v, b_w, _ = limits
     share = min(1.0, period / span.reach)
     v, omega = state[3], state[4]
     at_rest = abs(v) < 1e-9 and abs(omega) < 1e-9
     for i in range(n):
         wanted_v, wanted_w = samples[i]
+        if i == 0 or wanted_w != samples[i - 1, 1]:
+            turn(state[2], omega, wanted_w, span.reach, span.horizon / span.steps, arcs)
         # Above the cap it brakes fully; else it takes the period's share of the way.
         share_v = 1.0 if wanted_v < v and v > wish.v_cap else share
         next_v = slew(v, v + share_v * (wanted_v - v), a_v, b_v, period)
         next_w = slew(omega, omega + share * (wanted_w - omega), a_w, b_w, period)
         commands[i, 0], commands[i, 1] = next_v, next_w
         code = roll_out(
-            samples[i], state, span, around, body, margins, allowed, ahead, wish, limits, terms[i]
+            samples[i],
+            arcs,
+            state,
+            span,
+            around,
+            body,
+            margins,
+            allowed,
+            ahead,
+            wish,
+            limits,
+            terms[i],
         )
         stays = at_rest and next_v == 0.0 and next_w == 0.0
         if code == ADMISSIBLE and not stays:

@@ -57,38 +57,54 @@ def mark_free(
 ):
     """Stamps ``now`` into ``free_at`` for every cell whose centre lies in observed-free space.
 
-    (x0, y0) is the window's low corner, (x, y, theta) the sensor's pose, all in the map frame.
+    (x0, y0) is the window's low corner, (x, y, theta) the sensor's pose, all in the map frame. Each
+    gap is a sector between two beams, less than half a turn wide: row by row, what lies between them.
     """
     rows, columns = free_at.shape
     n = len(gaps)
-    far = 0.0
-    for i in range(n):
-        far = max(far, gaps[i])
-    if far <= 0.0:
+    if not 0.0 < abs(increment) < math.pi:
         return
-    first_row = max(0, int(math.floor((y - far - y0) / resolution)))
-    last_row = min(rows - 1, int(math.floor((y + far - y0) / resolution)))
-    first = theta + angle_min
-    for row in range(first_row, last_row + 1):
-        dy = y0 + (row + 0.5) * resolution - y
-        if abs(dy) > far:
+    cos, sin = np.empty(n), np.empty(n)
+    for i in range(n):
+        angle = theta + angle_min + increment * i
+        cos[i], sin[i] = math.cos(angle), math.sin(angle)
+    per_cell = 1.0 / resolution
+    left, low_edge = (x - x0) * per_cell - 0.5, (y - y0) * per_cell - 0.5  # in cells, from centres
+    for i in range(n if full_circle else n - 1):
+        r = gaps[i] * per_cell
+        if r <= 0.0:
             continue
-        half = math.sqrt(far * far - dy * dy)
-        low = max(0, int(math.floor((x - half - x0) / resolution)))
-        high = min(columns - 1, int(math.floor((x + half - x0) / resolution)))
-        for column in range(low, high + 1):
-            dx = x0 + (column + 0.5) * resolution - x
-            turn = (math.atan2(dy, dx) - first) / increment
-            period = 2.0 * math.pi / abs(increment)
-            turn -= period * math.floor(turn / period)
-            beam = int(turn)
-            if beam >= n:
-                if not full_circle or beam > n:
-                    continue
-                beam = n - 1
-            reach = gaps[beam]
-            if dx * dx + dy * dy <= reach * reach:
-                free_at[row, column] = now
+        j = (i + 1) % n
+        begin, end = (i, j) if increment > 0.0 else (j, i)  # counterclockwise
+        c1, s1, c2, s2 = cos[begin], sin[begin], cos[end], sin[end]
+        top, bottom = max(0.0, r * s1, r * s2), min(0.0, r * s1, r * s2)
+        if c1 > 0.0 >= c2 and top > 0.0:
+            top = r  # straight up lies between them
+        if c1 < 0.0 <= c2 and bottom < 0.0:
+            bottom = -r
+        per_row_1 = c1 / s1 if s1 != 0.0 else 0.0
+        per_row_2 = c2 / s2 if s2 != 0.0 else 0.0
+        first = max(0, int(math.ceil(low_edge + bottom)))
+        last = min(rows - 1, int(math.floor(low_edge + top)))
+        for row in range(first, last + 1):
+            dy = row - low_edge
+            low, high = -r, r
+            if s1 > 0.0:
+                high = min(high, dy * per_row_1)
+            elif s1 < 0.0:
+                low = max(low, dy * per_row_1)
+            if s2 > 0.0:
+                low = max(low, dy * per_row_2)
+            elif s2 < 0.0:
+                high = min(high, dy * per_row_2)
+            within = r * r - dy * dy
+            for column in range(
+                max(0, int(math.ceil(left + low))),
+                min(columns - 1, int(math.floor(left + high))) + 1,
+            ):
+                dx = column - left
+                if dx * dx <= within:
+                    free_at[row, column] = now
 
 
 @njit(cache=True)
