@@ -13,7 +13,7 @@ STEPS, REPEATS = 1_000_000, 15
 BITS, VALUE = 7290476056423008982, 0.7747530296718437  # what it comes to
 
 
-@njit
+@njit(cache=True)
 def kernel(steps: int) -> tuple[int, float]:
     """A xorshift generator and a recurrence on its numbers; every step waits for the one before."""
     bits, x = uint64(88172645463325252), 0.0
