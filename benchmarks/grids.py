@@ -1,25 +1,28 @@
 """Grid search beside the planners that a user could pick instead: ``python benchmarks/grids.py --help``.
 
 Every contender gets the same maps and queries, in turns, warm, one thread, and the best of its times
-counts. nano_astar solves the same task (octile, no corner cutting), so its lengths have to be ours;
-pyastar2d charges 1 for a diagonal step and cuts corners, tcod and scikit-image cut corners: theirs are
-other tasks, and the table says so. Peers that are not installed are left out.
+counts. nano_astar, pathfinding and networkx (on a graph with the same edges, made beforehand) solve the
+same task (octile, no corner cutting), so their lengths have to be ours; the last two are Python and only
+asked on maps of up to 256 cells a side, for beyond they take too long. pyastar2d charges 1 for a diagonal
+step and cuts corners, tcod and scikit-image cut corners: theirs are other tasks, and the table says so.
+Peers that are not installed are left out; the last column says over how many maps a row's means are.
 """
 
 import argparse
 import json
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from maps import Case, cases
+from maps import Case, Mask, cases
 
 from dynastar.planning import SearchGrid
 
 ROUNDS, REPEATS = 2, 4  # in a row, so that everybody finds the caches warm
+SMALL = 256  # cells a side, the largest map for peers in Python
 Query = tuple[tuple[int, int], tuple[int, int]]
 
 
@@ -88,11 +91,68 @@ def peers(case: Case) -> dict[str, Callable[[Query], float | None]]:
     return found
 
 
+def in_python(case: Case) -> dict[str, Callable[[Query], float]]:
+    """The peers in Python, on small maps."""
+    found: dict[str, Callable[[Query], float]] = {}
+    if max(case.occupied.shape) > SMALL:
+        return found
+    try:
+        from pathfinding.core.diagonal_movement import DiagonalMovement
+        from pathfinding.core.grid import Grid
+        from pathfinding.finder.a_star import AStarFinder
+
+        grid = Grid(matrix=(~case.occupied).astype(int).tolist())
+        finder = AStarFinder(diagonal_movement=DiagonalMovement.only_when_no_obstacle)
+
+        def objects(query: Query) -> float:
+            start, goal = (grid.node(column, row) for row, column in query)
+            path, _ = finder.find_path(start, goal, grid)  # what was left of the last is cleaned up
+            assert path[-1] is goal
+            return float(goal.g)
+
+        found["pathfinding"] = objects
+    except ImportError:
+        pass
+    try:
+        import networkx
+
+        graph = networkx.Graph()
+        graph.add_weighted_edges_from(edges(~case.occupied))
+
+        def octile(a: tuple[int, int], b: tuple[int, int]) -> float:
+            rows, columns = abs(a[0] - b[0]), abs(a[1] - b[1])
+            return rows + columns - (2.0 - math.sqrt(2.0)) * min(rows, columns)
+
+        found["networkx"] = lambda query: networkx.astar_path_length(graph, *query, octile)
+    except ImportError:
+        pass
+    return found
+
+
+def edges(free: Mask) -> Iterator[tuple[tuple[int, int], tuple[int, int], float]]:
+    """The steps of the grid: to the four neighbours, and diagonally past no corner."""
+    rows, columns = free.shape
+    for row, column in np.argwhere(free).tolist():
+        right = column + 1 < columns and free[row, column + 1]
+        if right:
+            yield (row, column), (row, column + 1), 1.0
+        if row + 1 == rows:
+            continue
+        if free[row + 1, column]:
+            yield (row, column), (row + 1, column), 1.0
+            if right and free[row + 1, column + 1]:
+                yield (row, column), (row + 1, column + 1), math.sqrt(2.0)
+            if column > 0 and free[row, column - 1] and free[row + 1, column - 1]:
+                yield (row, column), (row + 1, column - 1), math.sqrt(2.0)
+
+
 def measure(case: Case, quick: bool) -> dict[str, Any]:
     """Seconds by contender, summed over the case's queries, the best of some runs each."""
     contenders = ours(case) | peers(case)
     if quick:
         contenders = {k: v for k, v in contenders.items() if "other task" not in k}
+    else:
+        contenders |= in_python(case)
     took = dict.fromkeys(contenders, 0.0)
     for query in case.queries:
         best = dict.fromkeys(contenders, math.inf)
@@ -133,18 +193,21 @@ def main() -> None:
             print(f"{case.kind:9}{case.name:22}{1e3 * base / len(case.queries):9.2f} ms  {shown}")
     print()
     kinds = [*dict.fromkeys(row["kind"] for row in rows), "all"]
-    print(f"{'/ nano_astar':28}" + "".join(f"{kind:>10}" for kind in kinds) + f"{'worst':>10}")
-    for name in [n for n in rows[0]["seconds"] if n != "nano_astar"]:
-        line, worst = f"{name:28}", 0.0
+    columns = [*kinds, "worst", "maps"]
+    print(f"{'/ nano_astar':28}" + "".join(f"{column:>10}" for column in columns))
+    names = dict.fromkeys(name for row in rows for name in row["seconds"])
+    for name in [n for n in names if n != "nano_astar"]:
+        line, ratios = f"{name:28}", list[float]()
         for kind in kinds:
             ratios = [
                 row["seconds"][name] / row["seconds"]["nano_astar"]
                 for row in rows
-                if kind in (row["kind"], "all") and (name != "one shot" or row["size"] >= 256)
+                if kind in (row["kind"], "all")
+                and {name, "nano_astar"} <= row["seconds"].keys()
+                and (name != "one shot" or row["size"] >= 256)
             ]
-            worst = max(worst, *ratios)
             line += f"{mean(ratios):10.3f}"
-        print(line + f"{worst:10.3f}")
+        print(line + f"{max(ratios, default=math.nan):10.3f}{len(ratios):10}")
     fits = [r["seconds"]["auto"] / min(r["seconds"]["astar"], r["seconds"]["jump"]) for r in rows]
     print(f"auto / the better kernel: {mean(fits):.3f}, worst {max(fits):.3f}")
     if chosen.json_out:
