@@ -1,11 +1,12 @@
-"""Peak memory beyond the input, bytes a cell: ``python benchmarks/memory.py [N]`` (Linux).
+"""Peak memory beyond the input, bytes a cell: ``python benchmarks/memory.py --help`` (Linux).
 
 Each line is a process of its own that is warm before it is handed an N x N map (default 4096), prepares
-it and searches from corner to corner; the peak is the kernel's (VmHWM, reset beforehand).
+it and searches between two cells far apart; the peak is the kernel's (VmHWM, reset beforehand). At 16384
+a process takes up to 5 GB, most of it for choosing the cells.
 """
 
+import argparse
 import multiprocessing
-import sys
 import time
 from pathlib import Path
 
@@ -39,21 +40,33 @@ def child(task: tuple[str, str, int]) -> str:
     Path("/proc/self/clear_refs").write_text("5")
     before = status("VmRSS")
     began = time.perf_counter()
-    found = SearchGrid(occupied).search(start, goal, algorithm)
-    seconds = time.perf_counter() - began
-    peak = (status("VmHWM") - before) / n**2
-    return f"{name:12}{algorithm:10}{peak:10.1f}{seconds:8.2f} s{found.expanded:12}"
+    grid = SearchGrid(occupied)
+    prepared = time.perf_counter()
+    found = grid.search(start, goal, algorithm)
+    prepare, search = prepared - began, time.perf_counter() - prepared
+    peak = status("VmHWM") - before
+    return (
+        f"{name:12}{algorithm:10}{peak / n**2:10.1f}{peak / 2**20:8.0f} MB{prepare:9.2f} s"
+        f"{search:8.2f} s{found.expanded:12}"
+    )
 
 
 def main() -> None:
     """Prints a line for each map and algorithm."""
-    n = int(sys.argv[1]) if len(sys.argv) > 1 else 4096
-    print(f"{'map':12}{'algorithm':10}{'bytes/cell':>10}{'time':>10}{'expanded':>12}")
-    for name in MAPS:
-        for algorithm in ("astar", "auto", "improved"):
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("n", type=int, nargs="?", default=4096, help="cells a side")
+    parser.add_argument("--maps", nargs="+", choices=MAPS, default=list(MAPS))
+    parser.add_argument("--algorithms", nargs="+", default=["astar", "auto", "improved"])
+    chosen = parser.parse_args()
+    print(
+        f"{'map':12}{'algorithm':10}{'bytes/cell':>10}{'peak':>11}{'prepare':>11}{'search':>10}"
+        f"{'expanded':>12}"
+    )
+    for name in chosen.maps:
+        for algorithm in chosen.algorithms:
             context = multiprocessing.get_context("spawn")
             with context.Pool(1) as pool:
-                print(pool.apply(child, ((name, algorithm, n),)), flush=True)
+                print(pool.apply(child, ((name, algorithm, chosen.n),)), flush=True)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,196 @@
+"""How the cost grows: ``python benchmarks/growth.py [--out docs/media/growth.png]``.
+
+Four questions, each a table and a panel, log-log with the slope of every line (1: in proportion), the
+last one linear: a search of a prepared grid over the side of its map, the dynamic window over its
+samples, sensing (scan to distance field, tracker included) over the beams, and sensing and window over
+the movers, which walk about the robot and are tracked. Warm, one thread, the best of some times.
+"""
+
+import argparse
+import math
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import cv2
+import matplotlib
+import numpy as np
+from maps import queries, random_cells, rooms
+
+from dynastar import ROBOTS, Lidar, Navigator, NavigatorConfig, OccupancyGrid, Pose2D, RobotState
+from dynastar import Path as Line
+from dynastar.dwa import Choice, DwaConfig, Surroundings, Wish
+from dynastar.geometry import Twist
+from dynastar.obstacles import LayerConfig
+from dynastar.planning import SearchGrid
+from dynastar.simulation.lidar import LidarSimulator
+from dynastar.simulation.warm_up import warm_up
+
+Series = dict[str, list[tuple[float, float]]]  # by line: (x, ms)
+SIDES = 128, 256, 512, 1024, 2048, 4096
+SAMPLES = 100, 200, 400, 800, 1600, 3200, 6400
+BEAMS = 90, 180, 360, 720, 1440, 2880
+MOVERS = 0, 1, 2, 4, 8, 16
+HALL, CENTRE, PERIOD, RING = 12.0, Pose2D(6.0, 6.0), 0.1, 3.0  # m, s
+
+
+def least(run: Callable[[], object], repeats: int = 5) -> float:
+    """Milliseconds, the best of some times."""
+    best = math.inf
+    for _ in range(repeats + 1):
+        began = time.perf_counter()
+        run()
+        best = min(best, 1e3 * (time.perf_counter() - began))
+    return best
+
+
+def searches() -> Series:
+    """Mean over five queries, by algorithm and kind of map, over the side in cells."""
+    series: Series = {}
+    for n in SIDES:
+        for kind, occupied in (("random", random_cells(n, 0.2, 0)), ("rooms", rooms(n, 33, 0))):
+            grid, asked = SearchGrid(occupied), queries(occupied, 5, 0)
+            for algorithm in ("astar", "auto", "improved"):
+                times = [least(lambda q=q, a=algorithm, g=grid: g.search(*q, a), 3) for q in asked]
+                line = series.setdefault(f"{algorithm}, {kind}", [])
+                line.append((n, float(np.mean(times))))
+    return series
+
+
+class Bench:
+    """A robot amid a hall that others walk about in, and what its tick does there, step by step."""
+
+    def __init__(self, beams: int = 720, samples: int = 400, movers: int = 0) -> None:
+        count = round(math.sqrt(samples))
+        dwa = DwaConfig(v_samples=count, omega_samples=round(samples / count))
+        config = NavigatorConfig(period=PERIOD, dwa=dwa, layer=LayerConfig(size=10.0))
+        occupied = np.zeros((round(HALL / 0.05),) * 2, bool)
+        occupied[[0, -1]] = occupied[:, [0, -1]] = True
+        grid = OccupancyGrid.from_occupied(occupied, 0.05)
+        self.lidar = LidarSimulator(Lidar(beams, math.tau, 0.05, 12.0), grid)
+        self.navigator = Navigator(grid, ROBOTS["pioneer3dx"], config)
+        self.movers, self.now = movers, 0.0
+        self.around: Surroundings | None = None
+
+    def sense(self) -> float:
+        """Milliseconds from the next scan to the distance field and the tracks."""
+        self.now += PERIOD
+        at = 0.2 * self.now + np.arange(self.movers) * math.tau / max(self.movers, 1)
+        x, y = CENTRE.x + RING * np.cos(at), CENTRE.y + RING * np.sin(at)
+        discs = np.column_stack([x, y, np.full(len(at), 0.2)])
+        scan = self.lidar.scan(CENTRE, self.now, discs)
+        senses, state = self.navigator.senses, RobotState(self.now, CENTRE, Twist(0.3, 0.0))
+        began = time.perf_counter()
+        fault = senses.place(state) or senses.take_in([scan], self.now, self.navigator.chart.known)
+        self.around = senses.surroundings(self.now, None)
+        took = 1e3 * (time.perf_counter() - began)
+        assert fault is None, fault
+        return took
+
+    def choose(self) -> Choice:
+        """The window's choice along a straight path."""
+        assert self.around is not None
+        path = Line(np.array([CENTRE[:2], (HALL - 1.0, CENTRE.y)])).paced(0.0, 1.65, 0.1)
+        wish = Wish((CENTRE.x + 1.5, CENTRE.y), path, 0.1, 0.55)
+        margins = self.navigator.margins
+        return self.navigator.window.choose(CENTRE, Twist(0.3, 0.0), self.around, wish, margins)
+
+    def settled(self) -> float:
+        """Milliseconds of sensing, the best of some times, once every mover is tracked."""
+        took = [self.sense() for _ in range(60)]
+        assert self.around is not None
+        assert len(self.around.movers) == self.movers, (len(self.around.movers), self.movers)
+        return min(took[20:])
+
+
+def window() -> Series:
+    """The choice over the number of samples."""
+    line = []
+    for samples in SAMPLES:
+        bench = Bench(samples=samples)
+        bench.settled()
+        line.append((len(bench.choose().samples), least(bench.choose, 60)))
+    return {"window": line}
+
+
+def sensing() -> Series:
+    """Sensing over the number of beams."""
+    return {"sensing": [(beams, Bench(beams=beams).settled()) for beams in BEAMS]}
+
+
+def company() -> Series:
+    """Sensing and the choice over the number of movers tracked."""
+    series: Series = {"sensing": [], "window, 400 samples": []}
+    for movers in MOVERS:
+        bench = Bench(movers=movers)
+        series["sensing"].append((movers, bench.settled()))
+        series["window, 400 samples"].append((movers, least(bench.choose, 60)))
+    return series
+
+
+def growth(line: list[tuple[float, float]]) -> str:
+    """The slope of a log-log plot, by least squares; where x starts at 0, what one more of it takes."""
+    x, y = np.array(line).T
+    if x[0] == 0:
+        return f"{1e3 * float(np.polyfit(x, y, 1)[0]):+.0f} us each"
+    return f"slope {float(np.polyfit(np.log(x), np.log(y), 1)[0]):.2f}"
+
+
+def draw(panels: list[tuple[str, str, Series]], out: Path) -> None:
+    """The figure."""
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    from matplotlib.ticker import LogLocator
+
+    figure, axes = plt.subplots(2, 2, figsize=(10, 7.5), layout="constrained")
+    colours = {"astar": "C0", "auto": "C2", "improved": "C1"}
+    for axis, (title, unit, series) in zip(axes.flat, panels, strict=True):
+        for name, line in series.items():
+            algorithm = name.split(",")[0]
+            kind: dict[str, Any] = {"color": colours.get(algorithm)}
+            if algorithm == "astar":  # auto may lie upon it
+                kind |= {"linewidth": 3.5, "markersize": 9}
+            if "rooms" in name:
+                kind |= {"linestyle": "--", "markerfacecolor": "white"}
+            axis.plot(*zip(*line, strict=True), marker="o", label=f"{name}: {growth(line)}", **kind)
+        ticks = [x for x, _ in next(iter(series.values()))]
+        few = len(series) < 3
+        if 0 not in ticks:
+            axis.set(xscale="log", yscale="log")
+            axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,)))
+            axis.yaxis.set_major_formatter("{x:g}")
+        if few:
+            most = max(ms for line in series.values() for _, ms in line)
+            axis.set_ylim(0.0 if 0 in ticks else 0.1, 1.2 * most)
+        axis.set_xticks(ticks, [f"{x:g}" for x in ticks])
+        axis.minorticks_off()
+        axis.set(title=title, xlabel=unit, ylabel="time, ms")
+        axis.grid(alpha=0.3)
+        axis.legend(fontsize="small")
+    figure.savefig(out, dpi=100)
+
+
+def main() -> None:
+    """Measures, prints the tables and draws."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--out", type=Path, default=Path("docs/media/growth.png"))
+    out = parser.parse_args().out
+    cv2.setNumThreads(1)
+    warm_up()
+    panels = [
+        ("Search of a prepared grid", "side of the map, cells", searches()),
+        ("Dynamic window, 30 steps", "samples", window()),
+        ("Scan to distance field, window of 10 m at 5 cm", "beams", sensing()),
+        ("With others about, 720 beams", "movers tracked", company()),
+    ]
+    for title, unit, series in panels:
+        ticks = [x for x, _ in next(iter(series.values()))]
+        print(f"\n{title + ', ms':40}" + "".join(f"{x:>9g}" for x in ticks) + f"   over {unit}")
+        for name, line in series.items():
+            print(f"{name:40}" + "".join(f"{ms:9.3f}" for _, ms in line) + f"   {growth(line)}")
+    draw(panels, out)
+
+
+if __name__ == "__main__":
+    main()
