@@ -33,6 +33,7 @@ SAMPLES = 100, 200, 400, 800, 1600, 3200, 6400
 BEAMS = 90, 180, 360, 720, 1440, 2880
 MOVERS = 0, 1, 2, 4, 8, 16
 HALL, CENTRE, PERIOD, RING = 12.0, Pose2D(6.0, 6.0), 0.1, 3.0  # m, s
+TICKS = 150
 
 
 def least(run: Callable[[], object], repeats: int = 5) -> float:
@@ -96,12 +97,19 @@ class Bench:
         margins = self.navigator.margins
         return self.navigator.window.choose(CENTRE, Twist(0.3, 0.0), self.around, wish, margins)
 
-    def settled(self) -> float:
-        """Milliseconds of sensing, the best of some times, once every mover is tracked."""
-        took = [self.sense() for _ in range(60)]
-        assert self.around is not None
-        assert len(self.around.movers) == self.movers, (len(self.around.movers), self.movers)
-        return min(took[20:])
+    def settled(self) -> tuple[float, float]:
+        """Milliseconds of sensing and of the choice in turns, the best, once every mover is tracked."""
+        for _ in range(20):
+            self.sense()
+        took = []
+        for _ in range(TICKS):
+            sensed, began = self.sense(), time.perf_counter()
+            self.choose()
+            took.append((sensed, 1e3 * (time.perf_counter() - began)))
+            assert self.around is not None
+            assert len(self.around.movers) == self.movers, (len(self.around.movers), self.movers)
+        sensed, chosen = np.array(took).min(axis=0).tolist()
+        return sensed, chosen
 
 
 def window() -> Series:
@@ -109,24 +117,23 @@ def window() -> Series:
     line = []
     for samples in SAMPLES:
         bench = Bench(samples=samples)
-        bench.settled()
-        line.append((len(bench.choose().samples), least(bench.choose, 60)))
+        _, chosen = bench.settled()
+        line.append((len(bench.choose().samples), chosen))
     return {"window": line}
 
 
 def sensing() -> Series:
     """Sensing over the number of beams."""
-    return {"sensing": [(beams, Bench(beams=beams).settled()) for beams in BEAMS]}
+    return {"sensing": [(beams, Bench(beams=beams).settled()[0]) for beams in BEAMS]}
 
 
 def company() -> Series:
     """Sensing and the choice over the number of movers tracked."""
-    series: Series = {"sensing": [], "window, 400 samples": []}
-    for movers in MOVERS:
-        bench = Bench(movers=movers)
-        series["sensing"].append((movers, bench.settled()))
-        series["window, 400 samples"].append((movers, least(bench.choose, 60)))
-    return series
+    took = [(movers, *Bench(movers=movers).settled()) for movers in MOVERS]
+    return {
+        "sensing": [(movers, sensed) for movers, sensed, _ in took],
+        "window, 400 samples": [(movers, chosen) for movers, _, chosen in took],
+    }
 
 
 def growth(line: list[tuple[float, float]]) -> str:
