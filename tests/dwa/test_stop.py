@@ -54,8 +54,12 @@ def true_clearance(centres, footprint, x, y, theta):
 @pytest.mark.parametrize("footprint", [DISC, BOX], ids=["disc", "box"])
 def test_clearance_is_a_close_lower_bound(footprint, seed, x, y, theta):
     field, centres = world(seed)
-    found = footprint_clearance(round_about(field), body_of(footprint), 0.3, x, y, theta)
-    covered = covered_clearance(round_about(field), body_of(footprint), x, y, theta)
+    found = footprint_clearance(
+        round_about(field), body_of(footprint), 0.3, x, y, math.cos(theta), math.sin(theta)
+    )
+    covered = covered_clearance(
+        round_about(field), body_of(footprint), x, y, math.cos(theta), math.sin(theta)
+    )
     assert covered <= max(found, 0.0) + 1e-9 or found >= 0.3 - 1e-9
     truth = true_clearance(centres, footprint, x, y, theta)
     if footprint.is_disc or truth > 0.0:
@@ -84,8 +88,9 @@ def test_a_clear_arc_is_clear_everywhere(seed, theta, length, angle, footprint):
     field, centres = world(seed, 0.004)
     margin = 0.05
     around, body = round_about(field), body_of(footprint)
-    spare = footprint_clearance(around, body, 0.5, 2.0, 2.0, theta) - margin
-    left = stop_kernels.spare_after(spare, around, body, margin, 2.0, 2.0, theta, length, angle)
+    cos, sin = math.cos(theta), math.sin(theta)
+    spare = footprint_clearance(around, body, 0.5, 2.0, 2.0, cos, sin) - margin
+    left = stop_kernels.spare_after(spare, around, body, margin, 2.0, 2.0, cos, sin, length, angle)
     clear = left >= 0.0
     along = [
         true_clearance(
@@ -106,7 +111,7 @@ def certify(field, movers, v0, omega0, v, omega, period=0.1, linger=0.0):
     margins = Margins(standing=0.05, movers=0.1, spread=0.1, linger=linger)
     state = (2.0, 2.0, 0.0, v0, omega0)
     around, body = round_about(field, movers), body_of(DISC)
-    allowed = footprint_clearance(around, body, 0.5, 2.0, 2.0, 0.0)
+    allowed = footprint_clearance(around, body, 0.5, 2.0, 2.0, 1.0, 0.0)
     return stop_kernels.certify(
         around, body, margins, allowed, 0.0, state, v, omega, LIMITS, period
     )
@@ -158,10 +163,10 @@ def test_movers_are_kept_clear_of_in_every_way_they_may_go(x, y, vx, vy, v, omeg
         mover, spread, radius, state, v, omega, ramp, stop, ramp + stop, 0.0
     )
     nearest = math.inf
-    turned = stop_kernels.stop_from(state, v, omega, ramp)
+    poses = stop_kernels.stop_from(state, v, omega, ramp)
     for way in (1.0, 0.0, -1.0):
         for t in np.linspace(0.0, ramp + stop, 400):
-            px, py = stop_kernels.position_on_stop(state, turned, v, omega, ramp, stop, t)
+            px, py = stop_kernels.position_on_stop(poses, state, v, omega, ramp, stop, t)
             gap = math.hypot(x + way * vx * t - px, y + way * vy * t - py)
             nearest = min(nearest, gap - radius - 0.3 - spread * t)
     if nearest > 0.02:

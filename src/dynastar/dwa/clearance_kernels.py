@@ -17,7 +17,8 @@ def centre_clearance(field, x0, y0, resolution, x, y):
     rows, columns = field.shape
     per_cell = 1.0 / resolution  # the same for all calls of a loop, which the compiler sees
     fx, fy = (x - x0) * per_cell - 0.5, (y - y0) * per_cell - 0.5
-    if not (0.0 <= fx < columns - 1.0 and 0.0 <= fy < rows - 1.0):
+    inside = (fx >= 0.0) & (fy >= 0.0) & (fx < columns - 1.0) & (fy < rows - 1.0)  # one branch
+    if not inside:
         return 0.0
     c, r = int(fx), int(fy)
     a, b = fx - c, fy - r
@@ -64,10 +65,11 @@ def polygon_distance(vertices, px, py):
 
 
 @njit(cache=True)
-def footprint_clearance(around, body, enough, x, y, theta):
+def footprint_clearance(around, body, enough, x, y, cos, sin):
     """A lower bound of the distance (m) from the footprint to the nearest closed cell's centre.
 
-    ``around`` is a ``Surroundings``, ``body`` a ``Body``. Exact for polygons up to ``enough``
+    ``around`` is a ``Surroundings``, ``body`` a ``Body``, the heading is given by its cosine and
+    sine. Exact for polygons up to ``enough``
     metres: the circles decide first, then every closed cell near.
     """
     field, x0, y0, resolution, _ = around
@@ -83,7 +85,6 @@ def footprint_clearance(around, body, enough, x, y, theta):
     last = min(rows - 1, int((y + reach - y0) / resolution))
     low = max(0, int((x - reach - x0) / resolution))
     high = min(columns - 1, int((x + reach - x0) / resolution))
-    cos, sin = math.cos(theta), math.sin(theta)
     best = enough
     for row in range(first, last + 1):
         dy = y0 + (row + 0.5) * resolution - y
@@ -102,10 +103,9 @@ def footprint_clearance(around, body, enough, x, y, theta):
 
 
 @njit(cache=True)
-def covered_clearance(around, body, x, y, theta):
+def covered_clearance(around, body, x, y, cos, sin):
     """A lower bound of ``footprint_clearance`` from the discs that cover a polygon, -inf without any."""
     field, x0, y0, resolution, _ = around
-    cos, sin = math.cos(theta), math.sin(theta)
     least = np.inf if len(body.discs) else -np.inf
     for i in range(len(body.discs)):
         dx, dy, radius = body.discs[i]

@@ -53,6 +53,12 @@ def body_of(robot: Robot) -> Body:
     return Body(shape.vertices, shape.discs, shape.inscribed, shape.circumscribed)
 
 
+def clearance_at(around: Surroundings, body: Body, enough: float, pose: Pose2D) -> float:
+    """Metres, exact up to ``enough``, from a footprint at a pose to the nearest closed cell's centre."""
+    cos, sin = math.cos(pose.theta), math.sin(pose.theta)
+    return float(footprint_clearance(around, body, enough, pose.x, pose.y, cos, sin))
+
+
 class Wish(NamedTuple):
     """Where the robot should go: the target, the path from here every ``spacing`` metres, a speed cap."""
 
@@ -113,6 +119,17 @@ class Arcs(NamedTuple):
     share: Floats
 
 
+class Tracks(NamedTuple):
+    """What the samples of one speed share: where on the path each step would be, see ``follow``.
+
+    ``along`` (speeds, 2, steps), how many steps the path lasts and which one heading is taken at.
+    """
+
+    along: Floats
+    followed: npt.NDArray[np.int64]
+    aim: npt.NDArray[np.int64]
+
+
 class Buffers(NamedTuple):
     """A window's arrays: samples and commands (n, 2), terms (n, 4), refusals and scores (n,)."""
 
@@ -122,6 +139,7 @@ class Buffers(NamedTuple):
     refused: npt.NDArray[np.int64]
     score: Floats
     arcs: Arcs
+    tracks: Tracks
 
 
 @dataclass(frozen=True)
@@ -179,6 +197,11 @@ class DynamicWindow:
             np.zeros(n, np.int64),
             np.empty(n),
             self._arcs_for(Twist(0.0, 0.0)),
+            Tracks(
+                np.empty((n_v + 2, 2, self._span.steps)),
+                np.zeros(n_v + 2, np.int64),
+                np.zeros(n_v + 2, np.int64),
+            ),
         )
         self._weights = np.array(config.weights, dtype=np.float64)
 
@@ -195,7 +218,7 @@ class DynamicWindow:
 
     def clearance(self, around: Surroundings, pose: Pose2D, enough: float = 0.5) -> float:
         """Metres, up to ``enough``, from the footprint to the nearest centre of a closed cell."""
-        return float(footprint_clearance(around, self._body, enough, *pose))
+        return clearance_at(around, self._body, enough, pose)
 
     def choose(
         self,
@@ -219,7 +242,7 @@ class DynamicWindow:
         turning = turn_only or abs(math.remainder(bearing, math.tau)) > config.turn_in_place
         v_min = limits.v_min if may_reverse else 0.0
         v_cap = 0.0 if turning else min(wish.v_cap, limits.v_max)
-        n = window_kernels.sample_window(
+        n, n_speeds = window_kernels.sample_window(
             *twist,
             v_min,
             v_cap,
@@ -256,10 +279,11 @@ class DynamicWindow:
         state = (*pose, *twist)
         if abs(twist.v) > limits.v_max or abs(twist.omega) > limits.omega_max:  # as measured
             self._buffers = self._buffers._replace(arcs=self._arcs_for(twist))
-        allowed = self.clearance(around, pose, margins.standing + 0.1)
+        allowed = self.clearance(around, pose, margins.standing + 0.5)
         best = window_kernels.evaluate(
             self._buffers,
             n,
+            n_speeds,
             state,
             self._span,
             around,
@@ -307,7 +331,7 @@ class DynamicWindow:
         return None
 
     def _explain(self, best: int, n: int) -> Choice:
-        samples, commands, all_terms, all_refused, score, _ = self._buffers
+        samples, commands, all_terms, all_refused, score, *_ = self._buffers
         refused = all_refused[:n]
         counts = np.bincount(refused, minlength=max(REFUSALS) + 1)
         shares = dict.fromkeys(TERMS, 0.0)

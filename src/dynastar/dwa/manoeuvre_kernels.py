@@ -106,9 +106,11 @@ def drive(way, state, path, seconds, scene, need, turns, stoppable, gaps, touche
         t += STEP
         if drives:
             moved = min(moved + STEP, SURE)
-        sweeps = drives or len(body.vertices) > 0
-        if sweeps and footprint_clearance(around, body, need + 0.05, x, y, theta) < need - 1e-6:
-            return x, y, False
+        if drives or len(body.vertices) > 0:
+            cos, sin = math.cos(theta), math.sin(theta)
+            clear = footprint_clearance(around, body, need + 0.05, x, y, cos, sin)
+            if clear < need - 1e-6:
+                return x, y, False
         if t > seconds + 1e-9:
             continue
         end_x, end_y = x, y

@@ -8,8 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.dwa import manoeuvre_kernels
-from dynastar.dwa.clearance_kernels import footprint_clearance
-from dynastar.dwa.dwa import Body, Margins, Surroundings, body_of
+from dynastar.dwa.dwa import Body, Margins, Surroundings, body_of, clearance_at
 from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import Limits, Robot
 
@@ -144,7 +143,7 @@ class Passing:
             hoped,
             self._body,
             margins,
-            float(footprint_clearance(around, self._body, margins.standing + 0.1, *start.pose)),
+            clearance_at(around, self._body, margins.standing + 0.1, start.pose),
             float(start.ahead),
             self.robot.limits,
             self.period,

@@ -12,7 +12,7 @@ import numpy as np
 
 from dynastar.compiled import njit
 from dynastar.dwa.clearance_kernels import centre_clearance
-from dynastar.dwa.stop_kernels import ADMISSIBLE, CONTACT, MOVER, half_turn
+from dynastar.dwa.stop_kernels import ADMISSIBLE, CONTACT, MOVER, along_arc
 
 HEADING, DIST, VEL, SIMI = range(4)
 
@@ -28,10 +28,7 @@ def turn(theta, omega0, rate, reach, h, arcs):
     for k in range(len(arcs.share)):
         share = min(1.0, (k + 0.5) * h / reach) if reach > 0.0 else 1.0
         angle = (omega0 + share * (rate - omega0)) * h
-        half_cos, half_sin, sinc = half_turn(0.5 * angle)
-        mid_cos, mid_sin = cos * half_cos - sin * half_sin, sin * half_cos + cos * half_sin
-        cos, sin = mid_cos * half_cos - mid_sin * half_sin, mid_sin * half_cos + mid_cos * half_sin
-        dx, dy = h * sinc * mid_cos, h * sinc * mid_sin
+        dx, dy, cos, sin = along_arc(0.0, 0.0, cos, sin, h, angle)
         held_x, held_y, turned = held_x + dx, held_y + dy, turned + angle
         rise_x, rise_y = rise_x + share * dx, rise_y + share * dy
         arcs.held_x[k], arcs.held_y[k] = held_x, held_y
@@ -49,124 +46,144 @@ def at(arcs, k, x, y, v0, rise):
 
 
 @njit(cache=True)
-def clear_of_movers(movers, arcs, x, y, v0, v, h, steps, must, reach, ahead, cap, at_end):
-    """The least gap (m) to a mover at its predicted time, and whether one is met within ``must`` s.
+def follow(v0, v, h, wish, aim_after, arcs, along):
+    """Where a robot on the path would be after each step: into ``along`` (2, steps).
 
-    Movers that cannot come nearer than ``cap`` are passed over; ``reach`` (m) is the robot's own.
+    Returns how many steps the path lasts, and the last step that goes no further than ``aim_after``
+    (m), or -1. It is the same for all samples of one speed.
     """
-    least, met = np.inf, False
-    fastest = max(abs(v0), abs(v))
-    for m in range(len(movers)):
-        mx, my, vx, vy, size, _ = movers[m]
-        need = reach + size
-        mx, my = mx - x + vx * ahead, my - y + vy * ahead
-        far = need + cap + h * steps * (fastest + math.sqrt(vx * vx + vy * vy))
-        if mx * mx + my * my >= far * far:
-            continue
-        nearest = end = np.inf
-        for k in range(steps):
-            after = (k + 1) * h
-            px, py = at(arcs, k, 0.0, 0.0, v0, v - v0)
-            dx, dy = mx + vx * after - px, my + vy * after - py
-            end = dx * dx + dy * dy
-            nearest = min(nearest, end)
-            if end <= need * need and after <= must:
-                met = True
-        least = min(least, math.sqrt(end if at_end else nearest) - need)
-    return least, met
-
-
-@njit(cache=True)
-def along_path(arcs, x, y, v0, v, h, steps, path, spacing, aim_after):
-    """The mean distance (m) to the path over the same arc length; the last step within ``aim_after``."""
-    length = strayed = 0.0
-    followed = 0
-    aim = -1
-    last = len(path) - 1  # beyond its end there is nothing to follow
-    per_spacing = 1.0 / spacing
-    for k in range(steps):
+    path = wish.path
+    length = 0.0
+    followed, aim = 0, -1
+    for k in range(along.shape[1]):
         length += abs(v0 + arcs.share[k] * (v - v0)) * h
-        part = length * per_spacing
+        part = length / wish.spacing
         i = int(part)
-        if i < last:
-            px, py = at(arcs, k, x, y, v0, v - v0)
+        if i < len(path) - 1:  # beyond its end there is nothing to follow
             part -= i
-            dx = px - (1.0 - part) * path[i, 0] - part * path[i + 1, 0]
-            dy = py - (1.0 - part) * path[i, 1] - part * path[i + 1, 1]
-            strayed += math.sqrt(dx * dx + dy * dy)
+            along[0, k] = (1.0 - part) * path[i, 0] + part * path[i + 1, 0]
+            along[1, k] = (1.0 - part) * path[i, 1] + part * path[i + 1, 1]
             followed += 1
         if length <= aim_after:
             aim = k
-    return strayed / max(followed, 1), aim
+    return followed, aim
 
 
 @njit(cache=True)
-def roll_out(sample, arcs, state, span, around, body, margins, allowed, ahead, wish, limits, terms):
+def clear_of_closed(arcs, state, v, span, around, nearest, must, enough, at_end):
+    """The least distance (m) to a closed cell, inf beyond ``enough``, and whether it is a contact.
+
+    That is one nearer than ``nearest`` within ``must`` seconds. Where there is more than enough, so
+    there is until that can be used up.
+    """
+    x, y, _, v0, _ = state
+    field, x0, y0, resolution, _ = around
+    h = span.horizon / span.steps
+    step = max(abs(v0), abs(v), 1e-9) * h
+    checked = int(must / h)
+    least = np.inf
+    k = 0
+    while k < max(span.steps, checked):
+        px, py = at(arcs, k, x, y, v0, v - v0)
+        d = centre_clearance(field, x0, y0, resolution, px, py)
+        if d < nearest and k < checked:
+            return d, True
+        if d > enough + step:
+            k += int(min((d - enough) / step, 1e9))
+            continue
+        if k == span.steps - 1 or (k < span.steps and not at_end):
+            least = min(least, d)
+        k += 1
+    return least, False
+
+
+@njit(cache=True)
+def clear_of_movers(arcs, state, v, span, movers, reach, ahead, must, cap, at_end):
+    """The least gap (m) to a mover at its predicted time, inf beyond ``cap``, and whether one is met.
+
+    That is within ``must`` seconds; ``reach`` (m) is the robot's own. It looks again when a gap that
+    is wider than the cap can be used up.
+    """
+    x, y, _, v0, _ = state
+    h = span.horizon / span.steps
+    least, met = np.inf, False
+    for m in range(len(movers)):
+        mx, my, vx, vy, size, _ = movers[m]
+        mx, my = mx + vx * ahead - x, my + vy * ahead - y
+        need = reach + size
+        enough = need + cap
+        step = (max(abs(v0), abs(v)) + math.sqrt(vx * vx + vy * vy)) * h + 1e-9
+        k = int(min(max(0.0, math.sqrt(mx * mx + my * my) - enough) / step, 1e9))
+        while k < span.steps:
+            after = (k + 1) * h
+            px, py = at(arcs, k, 0.0, 0.0, v0, v - v0)
+            dx, dy = mx + vx * after - px, my + vy * after - py
+            square = dx * dx + dy * dy
+            if square > (enough + step) * (enough + step):
+                k += int(min((math.sqrt(square) - enough) / step, 1e9))
+                continue
+            if square <= need * need and after <= must:
+                met = True
+            if k == span.steps - 1 or not at_end:
+                least = min(least, math.sqrt(square) - need)
+            k += 1
+    return least, met
+
+
+@njit(cache=True, fastmath={"reassoc", "nsz"})  # a sum in any order
+def stray(arcs, x, y, v0, rise, along, followed):
+    """The sum of the distances (m) to where the path would be, over the first ``followed`` steps."""
+    total = 0.0
+    for k in range(followed):
+        px, py = at(arcs, k, x, y, v0, rise)
+        dx, dy = px - along[0, k], py - along[1, k]
+        total += math.sqrt(dx * dx + dy * dy)
+    return total
+
+
+@njit(cache=True)
+def roll_out(
+    v, omega, arcs, track, state, span, around, body, margins, allowed, ahead, wish, limits, terms
+):
     """Rolls out one sample and writes its four raw terms, each in [0, 1]; returns a refusal code.
 
     Eq. 7: along that very trajectory the first contact has to lie beyond where a stop from the
-    sample's speeds would end. ``arcs`` are those of the sample's turning rate, the other arguments
-    those of ``window_kernels.evaluate``.
+    sample's speeds would end. ``arcs`` are those of the sample's turning rate, ``track`` (along,
+    followed, aim) is what ``follow`` found for its speed; the other arguments are those of
+    ``window_kernels.evaluate``.
     """
-    sample_v, sample_w = sample
     x, y, theta, v0, _ = state
-    reach, horizon, steps = span
-    h = horizon / steps
-    stop = max(abs(sample_v) / limits.v_brake, abs(sample_w) / limits.omega_brake)
-    must = reach + 0.5 * stop  # holding the speeds for half the stopping time covers the stop's arc
-    field, x0, y0, resolution, movers = around
-    nearest = body.inscribed + min(margins.standing, allowed) - 1e-6
-    enough = body.inscribed + margins.standing + wish.clearance_cap
-    step = max(abs(v0), abs(sample_v)) * h
-    checked = int(must / h)
-    clear = np.inf
-    k = 0
-    while k < max(steps, checked):
-        px, py = at(arcs, k, x, y, v0, sample_v - v0)
-        d = centre_clearance(field, x0, y0, resolution, px, py)
-        if d < nearest and k < checked:
-            return CONTACT
-        if k < steps and (k == steps - 1 or not wish.at_end):
-            clear = min(clear, d)
-        if d > enough + step and not wish.at_end:  # so is the way until it can be used up
-            k += int((d - enough) / step) if step > 1e-9 else steps
-        else:
-            k += 1
-    clear = max(0.0, clear - body.inscribed - margins.standing)
+    stop = max(abs(v) / limits.v_brake, abs(omega) / limits.omega_brake)
+    must = span.reach + 0.5 * stop  # holding the speeds for half the stop covers the stop's arc
+    closer = body.inscribed + min(margins.standing, allowed) - 1e-6
+    apart = body.inscribed + margins.standing
+    cap = wish.clearance_cap
+    clear, contact = clear_of_closed(
+        arcs, state, v, span, around, closer, must, apart + cap, wish.at_end
+    )
+    if contact:
+        return CONTACT
+    reach = body.inscribed + margins.movers
     gap, met = clear_of_movers(
-        movers,
-        arcs,
-        x,
-        y,
-        v0,
-        sample_v,
-        h,
-        steps,
-        must + 0.5 * stop,
-        body.inscribed + margins.movers,
-        ahead,
-        wish.clearance_cap,
-        wish.at_end,
+        arcs, state, v, span, around.movers, reach, ahead, must + 0.5 * stop, cap, wish.at_end
     )
-    if met and (sample_v != 0.0 or v0 != 0.0):
+    if met and (v != 0.0 or v0 != 0.0):
         return MOVER
-    target_gap = math.hypot(wish.target_x - x, wish.target_y - y)
-    strayed, aim = along_path(
-        arcs, x, y, v0, sample_v, h, steps, wish.path, wish.spacing, 0.5 * target_gap
-    )
-    off = 0.0
-    if target_gap > 1e-6:  # turning the long way round is no way to the target
-        aim_x, aim_y, turned = x, y, 0.0
-        if aim >= 0:
-            aim_x, aim_y = at(arcs, aim, x, y, v0, sample_v - v0)
-            turned = arcs.turned[aim]
-        off = math.atan2(wish.target_y - aim_y, wish.target_x - aim_x) - theta
-        off = abs(math.atan2(math.sin(off), math.cos(off)) - turned)
+    along, followed, aim = track
+    strayed = stray(arcs, x, y, v0, v - v0, along, followed)
+    off, turned = 0.0, 0.0
+    if aim >= 0:
+        x, y = at(arcs, aim, x, y, v0, v - v0)
+        turned = arcs.turned[aim]
+    if math.hypot(wish.target_x - state[0], wish.target_y - state[1]) > 1e-6:
+        off = math.atan2(wish.target_y - y, wish.target_x - x) - theta
+        off -= math.tau * math.floor(off / math.tau + 0.5)
+        off = abs(off - turned)  # turning the long way round is no way to the target
     terms[HEADING] = 1.0 - min(off, math.pi) / math.pi
-    terms[DIST] = min(clear, max(0.0, gap), wish.clearance_cap) / wish.clearance_cap
-    speed = abs(sample_v) if wish.turning else max(0.0, sample_v)
+    terms[DIST] = min(max(0.0, min(clear - apart, gap)), cap) / cap
+    speed = abs(v) if wish.turning else max(0.0, v)
     terms[VEL] = max(0.0, 1.0 - abs(speed - wish.v_best) / wish.v_scale)
-    terms[SIMI] = 1.0 - min(1.0, strayed / wish.path_cap)
+    terms[SIMI] = 1.0 - min(1.0, strayed / max(followed, 1) / wish.path_cap)
     return ADMISSIBLE
 
 

@@ -46,7 +46,16 @@ def half_turn(half):
 
 
 @njit(cache=True)
-def spare_after(spare, around, body, need, x, y, theta, length, angle):
+def along_arc(x, y, cos, sin, length, angle):
+    """``arc`` for a heading that is given, and returned, by its cosine and sine."""
+    half_cos, half_sin, sinc = half_turn(0.5 * angle)
+    mid_cos, mid_sin = cos * half_cos - sin * half_sin, sin * half_cos + cos * half_sin
+    cos, sin = mid_cos * half_cos - mid_sin * half_sin, mid_sin * half_cos + mid_cos * half_sin
+    return x + length * sinc * mid_cos, y + length * sinc * mid_sin, cos, sin
+
+
+@njit(cache=True)
+def spare_after(spare, around, body, need, x, y, cos, sin, length, angle):
     """What an arc leaves of ``spare`` (m, clearance beyond ``need``), negative if it is not clear.
 
     Conservative advancement: no point of the footprint moves further than |length| + R |angle|,
@@ -58,10 +67,10 @@ def spare_after(spare, around, body, need, x, y, theta, length, angle):
     share = 0.0
     while spare < (1.0 - share) * sweep:
         share = min(1.0, share + max(spare, smallest) / sweep)
-        px, py, ptheta = arc(x, y, theta, share * length, share * angle)
-        spare = covered_clearance(around, body, px, py, ptheta) - need
+        px, py, pcos, psin = along_arc(x, y, cos, sin, share * length, share * angle)
+        spare = covered_clearance(around, body, px, py, pcos, psin) - need
         if spare < smallest:
-            spare = footprint_clearance(around, body, enough, px, py, ptheta) - need
+            spare = footprint_clearance(around, body, enough, px, py, pcos, psin) - need
         if spare < -1e-6:
             return spare
         spare = max(0.0, spare)
@@ -70,27 +79,31 @@ def spare_after(spare, around, body, need, x, y, theta, length, angle):
 
 @njit(cache=True)
 def stop_from(state, v, omega, ramp):
-    """The pose at which the speeds have changed to (v, omega) over ``ramp`` seconds."""
+    """The robot's pose, and that where its speeds have changed to (v, omega) over ``ramp`` seconds.
+
+    Both as (x, y, cos, sin).
+    """
     x, y, theta, v0, omega0 = state
-    return arc(x, y, theta, ramp * 0.5 * (v0 + v), ramp * 0.5 * (omega0 + omega))
+    begin = (x, y, math.cos(theta), math.sin(theta))
+    return begin, along_arc(*begin, ramp * 0.5 * (v0 + v), ramp * 0.5 * (omega0 + omega))
 
 
 @njit(cache=True)
-def position_on_stop(state, turned, v, omega, ramp, stop, t):
+def position_on_stop(poses, state, v, omega, ramp, stop, t):
     """(x, y) at ``t`` seconds: the speeds change to (v, omega) over ``ramp``, then to 0 over ``stop``.
 
-    ``turned`` is the pose between the two, from ``stop_from``.
+    ``poses`` are those of ``stop_from``.
     """
-    x, y, theta, v0, omega0 = state
+    v0, omega0 = state[3], state[4]
     if t <= ramp:
         share = t / ramp if ramp > 0.0 else 1.0
         length = t * (v0 + 0.5 * share * (v - v0))
         angle = t * (omega0 + 0.5 * share * (omega - omega0))
-        px, py, _ = arc(x, y, theta, length, angle)
+        px, py, _, _ = along_arc(*poses[0], length, angle)
         return px, py
     left = max(0.0, 1.0 - (t - ramp) / stop) if stop > 0.0 else 0.0
     done = 0.5 * stop * (1.0 - left * left)
-    px, py, _ = arc(turned[0], turned[1], turned[2], v * done, omega * done)
+    px, py, _, _ = along_arc(*poses[1], v * done, omega * done)
     return px, py
 
 
@@ -123,54 +136,47 @@ def first_touch(movers, spread, radius, state, v, omega, ramp, stop, until, ahea
     and its own already may not come nearer. While the robot moves it looks every ``TICK``; once it
     rests the touch is where the mover's way enters the disc.
     """
-    x, y = state[0], state[1]
-    turned = stop_from(state, v, omega, ramp)
+    poses = stop_from(state, v, omega, ramp)
     moves = min(ramp + stop, until)
-    travels = ramp * max(abs(state[3]), abs(v)) + 0.5 * stop * abs(v)
-    near, fastest = False, 0.0
-    for m in range(len(movers)):
-        mx, my, vx, vy, size, top = movers[m]
-        comes = max(top, math.sqrt(vx * vx + vy * vy))
-        fastest = max(fastest, comes)
-        most = radius + size + spread * moves + travels + comes * (ahead + moves)
-        near |= (mx - x) * (mx - x) + (my - y) * (my - y) < most * most
-    if near:
-        nearing = max(abs(state[3]), abs(v)) + fastest + spread + 1e-6
-        n = max(2, int(math.ceil(moves / TICK)))
-        k = 0
-        while k <= n:
-            t = moves * k / n
-            px, py = position_on_stop(state, turned, v, omega, ramp, stop, t)
-            after = ahead + t
-            spare = np.inf
-            for m in range(len(movers)):
-                mx, my, vx, vy, size, top = movers[m]
-                need = radius + size
-                now = math.sqrt((mx - x) * (mx - x) + (my - y) * (my - y))
-                grown = need + spread * min(after, moves) if now >= need else now - 1e-4
-                speed = math.sqrt(vx * vx + vy * vy)
-                faster = max(top, speed) / speed if speed > 1e-3 else 0.0
-                for way in WAYS:
-                    dx = mx + way * faster * vx * after - px
-                    dy = my + way * faster * vy * after - py
-                    if dx * dx + dy * dy < grown * grown:
-                        return t
-                    spare = min(spare, math.sqrt(dx * dx + dy * dy) - grown)
-            k += max(1, int(spare * n / (nearing * moves)))  # until then it cannot be used up
-    if until <= moves:
-        return np.inf
-    px, py = position_on_stop(state, turned, v, omega, ramp, stop, moves)
+    looks = max(2, int(math.ceil(moves / TICK)))
+    fastest = max(abs(state[3]), abs(v))
+    travels = ramp * fastest + 0.5 * stop * abs(v)
+    rest_x, rest_y = position_on_stop(poses, state, v, omega, ramp, stop, moves)
     touch = np.inf
     for m in range(len(movers)):
         mx, my, vx, vy, size, top = movers[m]
-        need = radius + size
-        now = math.sqrt((mx - x) * (mx - x) + (my - y) * (my - y))
-        grown = need + spread * moves if now >= need else now - 1e-4
+        now = math.sqrt((mx - state[0]) * (mx - state[0]) + (my - state[1]) * (my - state[1]))
         speed = math.sqrt(vx * vx + vy * vy)
-        faster = max(top, speed) / speed if speed > 1e-3 else 0.0
+        comes = max(top, speed)
+        if now >= radius + size + spread * moves + travels + comes * (ahead + until):
+            continue
+        faster = comes / speed if speed > 1e-3 else 0.0
+        near, grows = (radius + size, spread) if now >= radius + size else (now - 1e-4, 0.0)
+        nearing = (fastest + comes + spread + 1e-6) * moves / looks  # from look to look
+        spare = now - near - grows * moves - travels - comes * (ahead + moves)
+        k = 0 if spare < 0.0 else looks + 1
+        while k <= looks:
+            t = moves * k / looks
+            if t >= touch:
+                break
+            px, py = position_on_stop(poses, state, v, omega, ramp, stop, t)
+            after = ahead + t
+            grown = near + grows * min(after, moves)
+            square = np.inf
+            for way in WAYS:
+                dx = mx + way * faster * vx * after - px
+                dy = my + way * faster * vy * after - py
+                square = min(square, dx * dx + dy * dy)
+            spare = math.sqrt(square) - grown
+            if spare < 0.0:
+                touch = t
+            k += max(1, int(spare / nearing))  # until then it cannot be used up
+        if until <= moves or touch <= moves:
+            continue
+        grown = near + grows * moves
         for way in WAYS:
             ux, uy = way * faster * vx, way * faster * vy
-            at = enters(mx - px, my - py, ux, uy, grown, ahead + moves, ahead + until)
+            at = enters(mx - rest_x, my - rest_y, ux, uy, grown, ahead + moves, ahead + until)
             touch = min(touch, at - ahead)
     return touch
 
@@ -187,7 +193,8 @@ def certify(around, body, margins, allowed, ahead, state, v, omega, limits, peri
     """
     _, _, a_v, a_w, b_v, b_w, _ = limits
     parts = 2
-    px, py, ptheta, now_v, now_w = state
+    x, y, theta, now_v, now_w = state
+    cos, sin = math.cos(theta), math.sin(theta)
     need = min(margins.standing, allowed)
     spare = allowed - need
     for _ in range(parts):
@@ -195,14 +202,14 @@ def certify(around, body, margins, allowed, ahead, state, v, omega, limits, peri
         next_w = slew(now_w, omega, a_w, b_w, period / parts)
         length = 0.5 * (now_v + next_v) * period / parts
         angle = 0.5 * (now_w + next_w) * period / parts
-        spare = spare_after(spare, around, body, need, px, py, ptheta, length, angle)
+        spare = spare_after(spare, around, body, need, x, y, cos, sin, length, angle)
         if spare < 0.0:
             return NO_STOP
-        px, py, ptheta = arc(px, py, ptheta, length, angle)
+        x, y, cos, sin = along_arc(x, y, cos, sin, length, angle)
         now_v, now_w = next_v, next_w
     stop = max(abs(now_v) / b_v, abs(now_w) / b_w)
     length, angle = 0.5 * stop * now_v, 0.5 * stop * now_w
-    if spare_after(spare, around, body, need, px, py, ptheta, length, angle) < 0.0:
+    if spare_after(spare, around, body, need, x, y, cos, sin, length, angle) < 0.0:
         return NO_STOP
     if len(around.movers) == 0:
         return ADMISSIBLE

@@ -1,12 +1,10 @@
 """The window (Eqs. 5-7) and its evaluation in one pass over the samples."""
 
+import math
+
 from dynastar.compiled import njit
-from dynastar.dwa.rollout_kernels import normalise_and_choose, roll_out, turn
-from dynastar.dwa.stop_kernels import (
-    ADMISSIBLE,
-    certify,
-    slew,
-)
+from dynastar.dwa.rollout_kernels import follow, normalise_and_choose, roll_out, turn
+from dynastar.dwa.stop_kernels import ADMISSIBLE, certify, slew
 
 
 @njit(cache=True)
@@ -28,10 +26,11 @@ def axis(low, high, count, values):
 def sample_window(
     v, omega, v_min, v_cap, omega_cap, limits, reach, n_v, n_w, speeds, rates, samples
 ):
-    """V_m and V_d (Eqs. 5 and 6): the speeds reachable in ``reach`` seconds; returns how many samples.
+    """V_m and V_d (Eqs. 5 and 6): the speeds reachable in ``reach`` seconds.
 
     Above ``v_cap`` only braking is left. The last sample is the full brake, both speeds towards
-    zero in proportion. Samples of one turning rate come one after the other.
+    zero in proportion. Samples of one turning rate come one after the other, in the same order of
+    speeds. Returns how many samples there are, and how many speeds.
     """
     _, _, a_v, a_w, b_v, b_w, _ = limits
     low, high = slew(v, v_min, a_v, b_v, reach), slew(v, v_cap, a_v, b_v, reach)
@@ -46,13 +45,14 @@ def sample_window(
     stop = max(abs(v) / b_v, abs(omega) / b_w)
     left = max(0.0, 1.0 - reach / stop) if stop > 0.0 else 0.0
     samples[k, 0], samples[k, 1] = v * left, omega * left
-    return k + 1
+    return k + 1, n_speeds
 
 
 @njit(cache=True)
 def evaluate(
     buffers,
     n,
+    n_speeds,
     state,
     span,
     around,
@@ -68,27 +68,37 @@ def evaluate(
 ):
     """Eqs. 7 to 9 over ``n`` samples; returns the index of the best admissible one, or -1.
 
-    Samples of one turning rate come in a row. The command of a sample is the next period's step
+    They come as ``sample_window`` orders them. The command of a sample is the next period's step
     towards it; it has to have a certified stop. The groups are the NamedTuples of ``dwa.py``;
     ``allowed`` (m) is the clearance at the start, which is ``ahead`` seconds from now.
     """
-    samples, commands, terms, refused, score, arcs = buffers
+    samples, commands, terms, refused, score, arcs, tracks = buffers
     _, _, a_v, a_w, b_v, b_w, _ = limits
+    x, y, theta, v, omega = state
+    h = span.horizon / span.steps
+    half_way = 0.5 * math.hypot(wish.target_x - x, wish.target_y - y)
     share = min(1.0, period / span.reach)
-    v, omega = state[3], state[4]
     at_rest = abs(v) < 1e-9 and abs(omega) < 1e-9
     for i in range(n):
         wanted_v, wanted_w = samples[i]
         if i == 0 or wanted_w != samples[i - 1, 1]:
-            turn(state[2], omega, wanted_w, span.reach, span.horizon / span.steps, arcs)
+            turn(theta, omega, wanted_w, span.reach, h, arcs)
+        column = i % n_speeds if i < n - 1 else n_speeds
+        if i < n_speeds or i == n - 1:
+            tracks.followed[column], tracks.aim[column] = follow(
+                v, wanted_v, h, wish, half_way, arcs, tracks.along[column]
+            )
+        track = (tracks.along[column], tracks.followed[column], tracks.aim[column])
         # Above the cap it brakes fully; else it takes the period's share of the way.
         share_v = 1.0 if wanted_v < v and v > wish.v_cap else share
         next_v = slew(v, v + share_v * (wanted_v - v), a_v, b_v, period)
         next_w = slew(omega, omega + share * (wanted_w - omega), a_w, b_w, period)
         commands[i, 0], commands[i, 1] = next_v, next_w
         code = roll_out(
-            samples[i],
+            wanted_v,
+            wanted_w,
             arcs,
+            track,
             state,
             span,
             around,
