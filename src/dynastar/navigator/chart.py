@@ -8,7 +8,7 @@ import numpy.typing as npt
 from dynastar.clearance import inflate
 from dynastar.errors import GoalOccupied, NoPath, StartOccupied
 from dynastar.grid import OccupancyGrid
-from dynastar.navigator.chart_kernels import cells_under, seen_under
+from dynastar.navigator.chart_kernels import cells_under, stands_under, take_over
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.obstacles import Known, ObstacleLayer
 from dynastar.planning import GridPlanner, Plan
@@ -41,6 +41,7 @@ class Chart:
         self.planners = [GridPlanner(self.grid, r, config.unknown, config.planner) for r in radii]
         self.seen = np.zeros(self.prior.shape, np.bool_)
         self.cleared = np.zeros(self.prior.shape, np.bool_)
+        self._marks = np.zeros(self.prior.shape, np.uint8)
         self._under: tuple[tuple[float, float], Window] | None = None
         near = inflate(self.grid.occupied, 1.0, outside_blocked=True)
         self.known = Known(near, self.frame)
@@ -52,37 +53,29 @@ class Chart:
 
     def take_in(self, layer: ObstacleLayer) -> bool:
         """Marks what the layer shows occupied and clears what it shows free; whether that changed."""
-        low, high, below = self._window(layer)
-        if (high <= low).any():
+        low, high, under = self._window(layer)
+        top, bottom, left, right = take_over(
+            layer.states, under, low, high,
+            self._marks, self.known.mask, self._unknown, self.seen, self.cleared,
+        )  # fmt: skip
+        if bottom <= top:
             return False
-        part = np.s_[low[0] : high[0], low[1] : high[1]]
-        shape = (int(high[0] - low[0]), int(high[1] - low[1]))
-        occupied, free = np.empty((2, shape[0] * shape[1]), np.bool_)
-        seen_under(layer.states, below, occupied, free)
-        occupied, free = occupied.reshape(shape), free.reshape(shape)
-        occupied &= ~self.known.mask[part]
-        seen = occupied | (self.seen[part] & ~free)
-        cleared = (self.cleared[part] | free) & self._unknown[part]
-        changed = (seen != self.seen[part]) | (cleared != self.cleared[part])
-        if not changed.any():
-            return False
-        self.seen[part], self.cleared[part] = seen, cleared
-        self._mark(changed, low)
+        self._mark(top, bottom, left, right)
         return True
 
     def blocked_under(self, layer: ObstacleLayer) -> Mask:
         """Whether something stands under each of a layer's cells; off the chart it does."""
-        low, high, below = self._window(layer)
-        part = np.s_[low[0] : high[0], low[1] : high[1]]
-        blocked = (self.prior[part] & ~self.cleared[part]) | self.seen[part]
-        return np.append(blocked.ravel(), True)[below]
+        under = self._window(layer)[2]
+        blocked = np.empty(under.shape, np.bool_)
+        stands_under(under, self.prior, self.seen, self.cleared, blocked)
+        return blocked
 
     def forget(self) -> None:
         """Drops everything seen."""
-        changed = self.seen.copy()
+        rows, columns = np.nonzero(self.seen)
         self.seen[:] = False
-        if changed.any():
-            self._mark(changed, np.zeros(2, np.int64))
+        if len(rows):
+            self._mark(rows.min(), rows.max() + 1, columns.min(), columns.max() + 1)
 
     def plan(self, start: tuple[float, float], goal: tuple[float, float], explored: bool) -> Plan:
         """The roomiest plan that is as short as any; raises what the tightest planner raises.
@@ -117,10 +110,7 @@ class Chart:
         return limits
 
     def _window(self, layer: ObstacleLayer) -> Window:
-        """The chart's cells [low, high) under a layer, and under each of its cells the chart's.
-
-        The latter as an index into the flattened window, its size for what lies off the chart.
-        """
+        """The chart's cells [low, high) under a layer, and the index of the one under each of its."""
         if self._under is not None and self._under[0] == layer.origin:
             return self._under[1]
         window = cells_under(
@@ -130,11 +120,8 @@ class Chart:
         self._under = layer.origin, window
         return self._under[1]
 
-    def _mark(self, changed: Mask, low: npt.NDArray[np.int64]) -> None:
-        rows, columns = np.nonzero(changed)
-        first = low + np.array([rows.min(), columns.min()])
-        last = low + np.array([rows.max() + 1, columns.max() + 1])
-        part = np.s_[first[0] : last[0], first[1] : last[1]]
+    def _mark(self, top: int, bottom: int, left: int, right: int) -> None:
+        part = np.s_[top:bottom, left:right]
         patch = (self.prior[part] & ~self.cleared[part]) | self.seen[part]
         for planner in self.planners:
-            planner.mark(int(first[0]), int(first[1]), patch)
+            planner.mark(int(top), int(left), patch)

@@ -88,6 +88,9 @@ class ObstacleLayer:
         """
         a = self.config.resolution
         x0, y0 = self.origin
+        if not fresh:
+            kernels.keep_free(self.free_at, self.hit_at, x0, y0, a, x, y, radius, now)
+            return
         reach = math.ceil(radius / a) + 1
         row, column = math.floor(y / a) - self.row0, math.floor(x / a) - self.column0
         part = np.s_[
@@ -96,10 +99,8 @@ class ObstacleLayer:
         rows, columns = np.ogrid[part]
         inside = np.hypot((columns + 0.5) * a + x0 - x, (rows + 0.5) * a + y0 - y) <= radius
         free, hit = self.free_at[part], self.hit_at[part]
-        allowed = inside & (free > hit)
-        if fresh:
-            allowed = inside & (hit < now - self.config.memory) & ~self._occupied_on_map(part)
-        free[allowed] = np.maximum(free[allowed], now)
+        shown = inside & (hit < now - self.config.memory) & ~self._occupied_on_map(part)
+        free[shown] = np.maximum(free[shown], now)
 
     def see(
         self,

@@ -137,6 +137,23 @@ def mark_disc(stamps, x0, y0, resolution, x, y, radius, value, only_below):
 
 
 @njit(cache=True)
+def keep_free(free_at, hit_at, x0, y0, resolution, x, y, radius, now):
+    """Stamps ``now`` into the cells of a disc that were seen free since they were hit."""
+    rows, columns = free_at.shape
+    first = max(0, int(math.floor((y - radius - y0) / resolution)))
+    last = min(rows - 1, int(math.floor((y + radius - y0) / resolution)))
+    low = max(0, int(math.floor((x - radius - x0) / resolution)))
+    high = min(columns - 1, int(math.floor((x + radius - x0) / resolution)))
+    for row in range(first, last + 1):
+        dy = y0 + (row + 0.5) * resolution - y
+        for column in range(low, high + 1):
+            dx = x0 + (column + 0.5) * resolution - x
+            inside = dx * dx + dy * dy <= radius * radius
+            if inside and hit_at[row, column] < free_at[row, column] < now:
+                free_at[row, column] = now
+
+
+@njit(cache=True)
 def compose_states(free_at, hit_at, barred, horizon, states, open_):
     """States from stamps: 0 unseen, 1 free, 2 occupied; what is older than ``horizon`` is unseen.
 

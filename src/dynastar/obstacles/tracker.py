@@ -61,16 +61,22 @@ NOTHING_KNOWN = Known(np.zeros((1, 1), np.bool_), GridFrame(1.0))
 
 
 class Tracker:
-    """Follows what the scans show from one to the next; ``movers`` are the confirmed ones."""
+    """Follows what the scans show from one to the next.
+
+    ``movers`` are the confirmed ones as of the last scan. One that is out of sight is there twice:
+    where it may have got to, and where it was lost, for it may come back.
+    """
 
     def __init__(self, config: TrackerConfig = TrackerConfig()) -> None:
         self.config = config
         self._tracks = np.zeros((0, kernels.COLUMNS))
         self._stamp = -math.inf
+        self.movers: tuple[MovingObstacle, ...] = ()
 
     def forget(self) -> None:
         """Drops all tracks."""
         self._tracks = self._tracks[:0]
+        self.movers = ()
 
     def see(
         self,
@@ -134,22 +140,17 @@ class Tracker:
         kept = self._tracks[age <= np.where(moving, config.coast, 0.35)]
         self._tracks = np.vstack([kept, self._born(found[~taken], now)])
         self._tracks[len(kept) :, kernels.T_CLUSTER] = -1.0
+        self.movers = self._confirmed()
         return kernels.on_tracks(points, self._tracks, found, 0.1)
 
-    @property
-    def movers(self) -> tuple[MovingObstacle, ...]:
-        """The confirmed movers as of the last scan.
-
-        One that is out of sight is here twice: where it may have got to, and where it was lost,
-        for it may come back.
-        """
+    def _confirmed(self) -> tuple[MovingObstacle, ...]:
         rows = self._tracks[self._tracks[:, kernels.T_MOVING] > 0]
         lurking = rows[self._stamp - rows[:, kernels.T_SEEN] > kernels.LOST]
         lurking[:, [kernels.T_X, kernels.T_Y]] = lurking[:, [kernels.T_X0, kernels.T_Y0]]
         rows = np.vstack([rows, lurking])
         order = [kernels.T_X, kernels.T_Y, kernels.T_VX, kernels.T_VY, kernels.T_RADIUS]
         order.append(kernels.T_TOP)
-        return tuple(MovingObstacle(*map(float, row[order])) for row in rows)
+        return tuple(MovingObstacle(*row) for row in rows[:, order].tolist())
 
     def _born(self, found: npt.NDArray[np.float64], now: float) -> npt.NDArray[np.float64]:
         born = np.zeros((len(found), kernels.COLUMNS))
