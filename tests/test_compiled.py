@@ -29,6 +29,12 @@ def test_the_first_use_says_that_it_compiles_and_the_second_does_not(tmp_path):
     assert not (tmp_path / "dynastar").exists()
 
 
+@pytest.mark.slow
+def test_kernels_are_kept_there_even_if_numba_was_imported_before(tmp_path):
+    run("import numba; " + PLAN, tmp_path)
+    assert list((tmp_path / "dynastar").rglob("*.nbi"))
+
+
 def test_the_folder_is_named_after_the_sources(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     before = compiled.cache()

@@ -1,7 +1,8 @@
 """Compiling kernels: where they are kept, what is said meanwhile, and the bit tricks they need.
 
 numba notices edits only in the file that a kernel stands in, not in the files it imports from, so
-a shared cache would go stale; here all kernels' sources together name the folder.
+a shared cache would go stale; here all kernels' sources together name the folder. So it does, too,
+for a program that has imported numba before.
 """
 
 import hashlib
@@ -42,9 +43,11 @@ if "NUMBA_CACHE_DIR" not in os.environ:
     os.environ["NUMBA_CACHE_DIR"] = str(cache())
 
 import llvmlite.ir as ir  # noqa: E402 (numba reads the variable when it is imported)
-from numba import njit, types  # noqa: E402
+from numba import config, njit, types  # noqa: E402
 from numba.core import event  # noqa: E402
 from numba.extending import intrinsic  # noqa: E402
+
+config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
 
 __all__ = ["caches", "clear", "leading_zeros", "njit", "trailing_zeros"]
 

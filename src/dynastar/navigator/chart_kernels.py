@@ -47,7 +47,7 @@ def take_over(states, under, low, high, marks, known, unknown, seen, cleared):
         for j in range(states.shape[1]):
             if states[i, j] != UNSEEN and under[i, j] != OFF:
                 flat[under[i, j]] |= 1 if states[i, j] == SEEN_OCCUPIED else 2
-    top, bottom, left, right = high[0], low[0], high[1], low[1]
+    top, bottom, left, right = np.int64(1) << 62, 0, np.int64(1) << 62, 0
     for row in range(low[0], high[0]):
         for column in range(low[1], high[1]):
             occupied = (marks[row, column] & 1) != 0 and not known[row, column]
