@@ -54,7 +54,12 @@ def test_projection_is_the_nearest_point(points, x, y):
 def test_projection_stays_between_its_bounds(points, x, y, a, b):
     path = Path(points)
     low, high = sorted((a * path.length, b * path.length))
-    assert low - 1e-9 <= path.project(x, y, low, high) <= high + 1e-9
+    s = path.project(x, y, low, high)
+    assert low - 1e-9 <= s <= high + 1e-9
+    gap = np.hypot(path.at(s)[0] - x, path.at(s)[1] - y)
+    for other in np.linspace(low, high, 50):
+        assert gap <= np.hypot(path.at(other)[0] - x, path.at(other)[1] - y) + 1e-6
+    assert path.project(x, y, path.length + 1.0, path.length + 2.0) == pytest.approx(path.length)
 
 
 @given(polylines, st.floats(0.05, 5.0))

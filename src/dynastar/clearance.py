@@ -22,9 +22,13 @@ def distance_field(blocked: npt.ArrayLike, resolution: float) -> Field:
     mask = np.asarray(blocked, dtype=bool)
     if not mask.any():
         return np.full(mask.shape, FAR, np.float32)
-    free = np.ascontiguousarray(~mask).view(np.uint8)
+    return distances(np.ascontiguousarray(~mask).view(np.uint8), resolution)
+
+
+def distances(free: npt.NDArray[np.uint8], resolution: float) -> Field:
+    """``distance_field`` of cells of which some are 0, blocked, and the others 1, free."""
     field = cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-    return np.asarray(field * np.float32(resolution), dtype=np.float32)
+    return np.multiply(field, np.float32(resolution), out=field)
 
 
 def update_window(

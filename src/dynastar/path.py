@@ -81,18 +81,19 @@ class Path:
         """Metres along the path of its point nearest to (x, y), looked for from ``low`` to ``high``."""
         if len(self.points) == 1:
             return 0.0
-        a, step = self.points[:-1], np.diff(self.points, axis=0)
-        length = np.diff(self.arc)
+        first = min(max(low, 0.0), self.length)
+        last = min(max(high, first), self.length)
+        i = max(int(np.searchsorted(self.arc, first - 1e-9)) - 1, 0)
+        j = int(np.searchsorted(self.arc, last + 1e-9)) + 1  # the segments that are looked at
+        points, arc = self.points[i:j], self.arc[i:j]
+        a, step, length = points[:-1], points[1:] - points[:-1], arc[1:] - arc[:-1]
         along = ((x - a[:, 0]) * step[:, 0] + (y - a[:, 1]) * step[:, 1]) / np.maximum(
             length, 1e-12
         )
-        first, last = max(low, 0.0), min(max(high, low), self.length)
-        s = np.clip(self.arc[:-1] + np.clip(along, 0.0, length), first, last)
-        s = np.clip(s, self.arc[:-1], self.arc[1:])
-        legal = (s >= first - 1e-9) & (s <= last + 1e-9)
-        foot = a + step * ((s - self.arc[:-1]) / np.maximum(length, 1e-12))[:, None]
-        gap = np.hypot(foot[:, 0] - x, foot[:, 1] - y)
-        return float(s[np.argmin(np.where(legal, gap, np.inf))])
+        s = np.clip(arc[:-1] + np.clip(along, 0.0, length), first, last)
+        s = np.clip(s, arc[:-1], arc[1:])
+        foot = a + step * ((s - arc[:-1]) / np.maximum(length, 1e-12))[:, None]
+        return float(s[np.argmin(np.hypot(foot[:, 0] - x, foot[:, 1] - y))])
 
 
 @dataclass(frozen=True, eq=False)

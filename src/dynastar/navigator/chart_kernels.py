@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from dynastar.compiled import njit
-from dynastar.obstacles.layer import SEEN_OCCUPIED, UNSEEN
+from dynastar.obstacles.layer import SEEN_FREE, SEEN_OCCUPIED, UNSEEN
 
 OFF = -1  # the index of what lies off the chart
 
@@ -31,7 +31,7 @@ def cells_under(n, resolution, x0, y0, frame_resolution, frame_x, frame_y, yaw, 
             if inside:
                 low[0], low[1] = min(low[0], row), min(low[1], column)
                 high[0], high[1] = max(high[0], row + 1), max(high[1], column + 1)
-    return low, high, under
+    return np.minimum(low, high), high, under
 
 
 @njit(cache=True)
@@ -46,18 +46,25 @@ def take_over(states, under, low, high, marks, known, unknown, seen, cleared):
     for i in range(states.shape[0]):
         for j in range(states.shape[1]):
             if states[i, j] != UNSEEN and under[i, j] != OFF:
-                flat[under[i, j]] |= 1 if states[i, j] == SEEN_OCCUPIED else 2
-    top, bottom, left, right = np.int64(1) << 62, 0, np.int64(1) << 62, 0
+                flat[np.uint64(under[i, j])] |= states[i, j]
+    top, bottom, left, right = int(high[0]), int(low[0]), int(high[1]), int(low[1])
+    first = np.uint64(low[1])
     for row in range(low[0], high[0]):
-        for column in range(low[1], high[1]):
-            occupied = (marks[row, column] & 1) != 0 and not known[row, column]
-            free = (marks[row, column] & 2) != 0
-            is_seen = occupied or (seen[row, column] and not free)
-            is_cleared = (cleared[row, column] or free) and unknown[row, column]
-            if is_seen != seen[row, column] or is_cleared != cleared[row, column]:
-                seen[row, column], cleared[row, column] = is_seen, is_cleared
+        marked, is_known, is_unknown = marks[row], known[row], unknown[row]
+        was_seen, was_cleared = seen[row], cleared[row]
+        for i in range(high[1] - low[1]):
+            column = first + np.uint64(i)
+            mark = marked[column]
+            if mark == 0:
+                continue
+            occupied = (mark & SEEN_OCCUPIED) != 0 and not is_known[column]
+            free = (mark & SEEN_FREE) != 0
+            now_seen = occupied or (was_seen[column] and not free)
+            now_cleared = (was_cleared[column] or free) and is_unknown[column]
+            if now_seen != was_seen[column] or now_cleared != was_cleared[column]:
+                was_seen[column], was_cleared[column] = now_seen, now_cleared
                 top, bottom = min(top, row), max(bottom, row + 1)
-                left, right = min(left, column), max(right, column + 1)
+                left, right = min(left, low[1] + i), max(right, low[1] + i + 1)
     return top, bottom, left, right
 
 

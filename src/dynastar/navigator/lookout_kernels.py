@@ -20,12 +20,14 @@ def across(view, x, y, ux, uy, radius):
     ``view`` is a ``View``.
     """
     free_at, solid, x0, y0, resolution, since = view
+    rows, columns = free_at.shape
     unseen, shut = True, False
     for off in (-radius, 0.0, radius):
-        r = int(math.floor((y + off * ux - y0) / resolution))
-        c = int(math.floor((x - off * uy - x0) / resolution))
-        if not (0 <= r < free_at.shape[0] and 0 <= c < free_at.shape[1]):
+        row, column = (y + off * ux - y0) / resolution, (x - off * uy - x0) / resolution
+        inside = (row >= 0.0) & (row < rows) & (column >= 0.0) & (column < columns)  # one branch
+        if not inside:
             return True, True
+        r, c = np.uint64(row), np.uint64(column)
         unseen &= free_at[r, c] < since
         shut |= solid[r, c]
     return unseen, shut

@@ -6,7 +6,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.clearance import distance_field
+from dynastar.clearance import distances
 from dynastar.config import Field
 from dynastar.geometry import Pose2D
 from dynastar.grid import OccupancyGrid
@@ -159,7 +159,7 @@ class ObstacleLayer:
             self.states,
             self.open,
         )
-        self.field = distance_field(self.open == 0, self.config.resolution)
+        self.field = distances(self.open, self.config.resolution)  # the rim is closed
 
     def _bar(self) -> None:
         self._barred[:] = False

@@ -70,12 +70,18 @@ def mark_free(
         cos[i], sin[i] = math.cos(angle), math.sin(angle)
     per_cell = 1.0 / resolution
     left, low_edge = (x - x0) * per_cell - 0.5, (y - y0) * per_cell - 0.5  # in cells, from centres
-    for i in range(n if full_circle else n - 1):
-        r = gaps[i] * per_cell
+    corner = 1.0 + math.hypot(max(left, columns - left), max(low_edge, rows - low_edge))
+    sectors = n if full_circle else n - 1
+    widest = int(1.0 / abs(increment))  # sectors that are taken as one, if all reach over the rim
+    j = 0
+    while j < sectors:
+        i, r = j, min(gaps[j] * per_cell, corner)
+        j += 1
         if r <= 0.0:
             continue
-        j = (i + 1) % n
-        begin, end = (i, j) if increment > 0.0 else (j, i)  # counterclockwise
+        while r == corner and j < sectors and j - i < widest and gaps[j] * per_cell >= corner:
+            j += 1
+        begin, end = (i, j % n) if increment > 0.0 else (j % n, i)  # counterclockwise
         c1, s1, c2, s2 = cos[begin], sin[begin], cos[end], sin[end]
         top, bottom = max(0.0, r * s1, r * s2), min(0.0, r * s1, r * s2)
         if c1 > 0.0 >= c2 and top > 0.0:
