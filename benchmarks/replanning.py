@@ -2,7 +2,7 @@
 
 Maps of 2048 x 2048 cells, and on each 40 x 40 cells that block the way 100 cells from the robot (5 m at
 5 cm): the prepared grid is updated and searched, or a new one prepared and searched. Both ways are as
-long as each other.
+long as each other. Where it does not jump, ``auto`` goes by what its last search from the goal knows.
 """
 
 import math
@@ -25,7 +25,9 @@ def main() -> None:
         "maze 8": maze(N, 8, 0),
         "office": office(N, 0),
     }
-    print(f"{'map':12}{'algorithm':10}{'update':>9}{'search':>9}{'prepare':>9}{'ratio':>8}   ms")
+    print(
+        f"{'map':12}{'algorithm':10}{'update':>9}{'search':>9}{'prepare':>9}{'search':>9}{'ratio':>8}   ms"
+    )
     for name, occupied in maps.items():
         start, goal = queries(occupied, 1, 0)[0]
         for algorithm in ("auto", "astar", "improved"):
@@ -58,7 +60,7 @@ def main() -> None:
                 continue
             update, search, prepare, again = (1e3 * least[key] for key in least)
             print(
-                f"{name:12}{algorithm:10}{update:9.2f}{search:9.2f}{prepare + again - search:9.2f}"
+                f"{name:12}{algorithm:10}{update:9.2f}{search:9.2f}{prepare:9.2f}{again:9.2f}"
                 f"{(update + search) / (prepare + again):8.2f}"
             )
 

@@ -185,6 +185,55 @@ def test_an_updated_grid_is_as_if_made_anew(seed):
             assert (grid.search(start, goal, "improved").cells == expected.cells).all()
 
 
+@given(
+    st.integers(0, 10**9),
+    st.lists(st.sampled_from(["close", "close", "open", "flood", "move"]), max_size=8),
+)
+@settings(max_examples=200, deadline=None)
+def test_auto_finds_the_shortest_way_again_whatever_changed(seed, changes):
+    occupied, start, goal = random_world(seed, size=20, density=0.2)
+    rng = np.random.default_rng(seed)
+    grid = SearchGrid(occupied)
+    for change in ["none", *changes]:
+        if change in ("close", "open"):
+            row, column = (int(rng.integers(0, n)) for n in occupied.shape)
+            patch = occupied[row : row + 4, column : column + 4]
+            patch[rng.random(patch.shape) < 0.5] = change == "close"
+            occupied[start] = occupied[goal] = False
+            grid.update(row, column, patch)
+        elif change == "move":
+            free = np.argwhere(~occupied)
+            start = tuple(map(int, free[rng.integers(0, len(free))]))
+        elif change == "flood":
+            grid.flood(start)
+        grid._jumps = False
+        lengths = shortest(occupied, start)
+        if goal not in lengths:
+            with pytest.raises(NoPath):
+                grid.search(start, goal, "auto")
+            assert not grid.reached(goal)
+            continue
+        found = grid.search(start, goal, "auto", explored=True)
+        assert found.cost == pytest.approx(lengths[goal], rel=1e-6)
+        assert_legal(occupied, found.cells, start, goal)
+        assert len(found.explored) == found.expanded
+
+
+def test_what_closes_near_the_start_costs_little_to_go_round():
+    occupied = np.random.default_rng(0).random((300, 300)) < 0.2
+    occupied[:20, :20] = occupied[-20:, -20:] = False
+    grid = SearchGrid(occupied)
+    first = grid.search((5, 5), (295, 295), "auto")
+    row, column = map(int, first.cells[30])
+    patch = np.ones((8, 8), bool)
+    occupied[row : row + 8, column : column + 8] = True
+    grid.update(row, column, patch)
+    again = grid.search((5, 5), (295, 295), "auto")
+    assert again.expanded < 0.25 * first.expanded
+    assert again.cost == pytest.approx(SearchGrid(occupied).search((5, 5), (295, 295)).cost)
+    assert again.cost >= first.cost
+
+
 def test_a_flood_reaches_what_dijkstra_reaches():
     occupied, start, _ = random_world(11, size=30)
     grid = SearchGrid(occupied)

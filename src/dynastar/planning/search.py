@@ -8,6 +8,7 @@ import numpy.typing as npt
 from dynastar.config import choose
 from dynastar.errors import GoalOccupied, MapError, NoPath, OutOfMap, StartOccupied
 from dynastar.planning import bucket_kernel, heap_kernel, jump_kernel, labels
+from dynastar.planning.goal_tree import GoalTree
 from dynastar.planning.heuristic import PLANNERS, HeuristicConfig, kernel_terms
 from dynastar.planning.neighbours import count_turns, find_near
 
@@ -61,6 +62,8 @@ class SearchGrid:
         self._heads = np.empty(bucket_kernel.BUCKETS, np.int32)
         self._pool = np.empty(1024, np.int64)  # or the heap's keys
         self._nodes = np.empty(1024, np.int32)
+        self._tree: GoalTree | None = None
+        self._last = self._labels, 0  # what the last search wrote, and its stamp
 
     @property
     def occupied(self) -> npt.NDArray[np.bool_]:
@@ -124,6 +127,8 @@ class SearchGrid:
         if self._lines is not None:
             self._pack(row0 + 1, col0 + 1, bottom + 1, right + 1)
         self._jumps = None
+        if self._tree is not None:
+            self._tree.changed(top + 1, left + 1, end + 1, side + 1, bool((change < 0).any()))
 
     def search(
         self,
@@ -136,9 +141,11 @@ class SearchGrid:
         """The way from cell to cell by ``algorithm``, a name in ``ALGORITHMS``.
 
         dijkstra, astar, jump and auto find the shortest way of the 8-connected grid, within 3e-7 of
-        its length: all round, towards the goal, by jump points, or as fits the map. weighted and
-        improved are Eqs. 2-3 with the terms of ``heuristic``; weighted with a weight of 1 is the
-        traditional A* on the improved one's kernel, as an ablation wants it.
+        its length: all round, towards the goal, by jump points, or as fits the map. Where auto does
+        not jump, it searches from the goal, and to the same goal the next time only what cells that
+        closed meanwhile have cut off. weighted and improved are Eqs. 2-3 with the terms of
+        ``heuristic``; weighted with a weight of 1 is the traditional A* on the improved one's
+        kernel, as an ablation wants it.
 
         Raises OutOfMap, StartOccupied, GoalOccupied or NoPath; ConfigError for an unknown name.
         """
@@ -148,7 +155,14 @@ class SearchGrid:
             raise StartOccupied(f"the start, cell {start}, is occupied: expected a free cell")
         if not self.is_free(goal):
             raise GoalOccupied(f"the goal, cell {goal}, is occupied: expected a free cell")
-        found, expanded = self._run(start, goal, algorithm, heuristic or HeuristicConfig())
+        terms = heuristic or HeuristicConfig()
+        if algorithm == "auto":
+            algorithm = "jump" if self._prefers_jumps() else "astar"
+            if algorithm == "astar" and terms.estimate == "octile":
+                result = self._again(start, goal)
+                if result is not None:
+                    return result._replace(explored=self.expanded_cells() if explored else None)
+        found, expanded = self._run(start, goal, algorithm, terms)
         if not found:
             raise NoPath(
                 f"no way leads from cell {start} to cell {goal}: "
@@ -162,23 +176,24 @@ class SearchGrid:
         start = self._inside(start_rc, "start")
         self._run(start, None, "dijkstra", HeuristicConfig())
         lengths = (self._labels >> labels.G_SHIFT) / labels.STRAIGHT
-        lengths[~self._closed(self._labels)] = np.inf
+        lengths[~self._closed()] = np.inf
         return lengths.reshape(self._near.shape)[1:-1, 1:-1]
 
     def reached(self, cell: Cell) -> bool:
         """Whether the last search or flood expanded a cell."""
         node = self._node(self._inside(cell, "cell"))
-        return bool(self._closed(self._labels[node : node + 1])[0])
+        known, stamp = self._last
+        return (int(known[node]) & (labels.STAMP_BITS | 1)) == stamp << labels.STAMP_SHIFT | 1
 
     def way_to(self, cell: Cell) -> Cells:
-        """The way (n, 2) to a cell that the last search or flood expanded; NoPath for any other."""
+        """The way (n, 2) to a cell that the last flood expanded; NoPath for any other."""
         if not self.reached(cell):
-            raise NoPath(f"cell {cell} was not reached by the last search: expected one that was")
+            raise NoPath(f"cell {cell} was not reached by the last flood: expected one that was")
         return self._trace(cell)[0]
 
     def expanded_cells(self) -> Cells:
         """The cells (m, 2) that the last search expanded, row by row."""
-        nodes = np.flatnonzero(self._closed(self._labels))
+        nodes = np.flatnonzero(self._closed())
         return np.column_stack(np.divmod(nodes, self._width)).astype(np.int32) - np.int32(1)
 
     def _run(
@@ -189,11 +204,10 @@ class SearchGrid:
             self._labels[:] = 0
             self._stamp = 0
         self._stamp += 1
+        self._last = self._labels, self._stamp
         from_to = self._node(start), -1 if goal is None else self._node(goal)
         where = self._width, self._labels, self._stamp, *from_to
         near = self._near.reshape(-1)
-        if algorithm == "auto":
-            algorithm = "jump" if self._prefers_jumps() else "astar"
         if algorithm == "jump":
             found, expanded, self._pool, self._nodes = jump_kernel.jump_search(
                 near, *self.lines, *where, self._pool, self._nodes
@@ -212,6 +226,14 @@ class SearchGrid:
         )  # fmt: skip
         return found, expanded
 
+    def _again(self, start: Cell, goal: Cell) -> SearchResult | None:
+        """The shortest way by what is known of ways to the goal, or None if there is none."""
+        if self._tree is None:
+            self._tree = GoalTree(self._near)
+        found, expanded = self._tree.search(self._node(start), self._node(goal))
+        self._last = self._tree.searched, self._tree.stamp
+        return SearchResult(*self._tree.trace(), expanded, None) if found else None
+
     def _prefers_jumps(self) -> bool:
         """Whether the map has so few corners that jumping from one to the next is worth it."""
         if self._jumps is None:
@@ -228,9 +250,9 @@ class SearchGrid:
     def _trace(self, goal: Cell) -> tuple[Cells, float]:
         return labels.trace(self._labels, self._stamp, self._width, self._node(goal))
 
-    def _closed(self, known: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
-        mine = self._stamp << labels.STAMP_SHIFT | 1
-        return (known & (labels.STAMP_BITS | 1)) == mine
+    def _closed(self) -> npt.NDArray[np.bool_]:
+        known, stamp = self._last
+        return (known & (labels.STAMP_BITS | 1)) == stamp << labels.STAMP_SHIFT | 1
 
     def _node(self, cell: Cell) -> int:
         return (cell[0] + 1) * self._width + cell[1] + 1

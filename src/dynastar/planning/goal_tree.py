@@ -1,0 +1,95 @@
+"""Shortest ways to a goal that stays the same, while cells close and the robot moves."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.planning import bucket_kernel, labels, tree_kernel
+from dynastar.planning.neighbours import Bytes
+
+Cells = npt.NDArray[np.int32]
+
+
+class _Tree(NamedTuple):
+    """A search from the goal: its stamp, the nodes it led between, how many it expanded."""
+
+    stamp: int
+    goal: int
+    start: int
+    expanded: int
+
+
+class GoalTree:
+    """The last search from a goal, and what of it still stands.
+
+    ``near`` [rows, columns] is that of a padded grid, which may change; nodes are indices into it.
+    """
+
+    def __init__(self, near: Bytes) -> None:
+        self.near = near
+        self.labels = np.zeros(near.size, np.int64)
+        self.again = np.zeros(near.size, np.int64)  # costs the pages that are written to
+        self.stamp = 0
+        self._tree: _Tree | None = None
+        self._way = (
+            -1,
+            0,
+            0,
+        )  # its last node before the tree's (-1: none), that, and the tree's stamp
+        self._heads = np.empty(bucket_kernel.BUCKETS, np.int32)
+        self._keys = np.empty(1024, np.int64)
+        self._nodes = np.empty(1024, np.int32)
+
+    def changed(self, top: int, left: int, bottom: int, right: int, opened: bool) -> None:
+        """Takes notice that ``near`` is another in a window, and whether cells have opened there."""
+        if opened:
+            self._tree = None  # there may be shorter ways
+        if self._tree is not None:
+            self._nodes = tree_kernel.prune(
+                self.near.reshape(-1), self.near.shape[1], self.labels, self._tree.stamp,
+                top, left, bottom, right, self._nodes,
+            )  # fmt: skip
+
+    def search(self, start: int, goal: int) -> tuple[bool, int]:
+        """Whether there is a way between two nodes, and how many were expanded to find it."""
+        if self.stamp == labels.MAX_STAMP:
+            self.labels[:] = self.again[:] = self.stamp = 0
+            self._tree = None
+        self.stamp += 1
+        near, width, tree = self.near.reshape(-1), self.near.shape[1], self._tree
+        if tree is None or tree.goal != goal:
+            found, expanded, self._keys = bucket_kernel.shortest(
+                near, width, self.labels, self.stamp, goal, start, True, self._heads, self._keys
+            )
+            self._tree = _Tree(self.stamp, goal, start, expanded) if found else None
+            self._way = -1, start, self.stamp
+            return found, expanded
+        if tree_kernel.stands(self.labels[start], tree.stamp):
+            self._way = -1, start, tree.stamp
+            return True, 0
+        last, meeting, expanded, self._keys, self._nodes = tree_kernel.search_again(
+            near, width, self.labels, tree.stamp, tree.start, goal,
+            self.again, self.stamp, start, self._keys, self._nodes,
+        )  # fmt: skip
+        self._way = last, meeting, tree.stamp
+        if last < 0 or 2 * expanded > tree.expanded:  # too little of it is left
+            self._tree = None
+        return last >= 0, expanded
+
+    def trace(self) -> tuple[Cells, float]:
+        """The way (n, 2) that the last search found, in unpadded (row, column), and its length."""
+        last, meeting, stamp = self._way
+        width = self.near.shape[1]
+        back, cost = labels.trace(self.labels, stamp, width, meeting)
+        if last < 0:
+            return back[::-1], cost
+        cells, first_cost = labels.trace(self.again, self.stamp, width, last)
+        step = math.dist(cells[-1], back[-1])
+        return np.vstack([cells, back[::-1]]), first_cost + step + cost
+
+    @property
+    def searched(self) -> npt.NDArray[np.int64]:
+        """The labels that the last search wrote under ``stamp``."""
+        return self.labels if self._way[2] == self.stamp else self.again
