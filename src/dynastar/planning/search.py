@@ -16,7 +16,7 @@ Cells = npt.NDArray[np.int32]
 Cell = tuple[int, int]
 
 ALGORITHMS = {name: name for name in (*PLANNERS, "jump", "auto")}
-SAMPLED = 1 << 14  # cells that are looked at to tell what the map is like
+SAMPLED = 1 << 12  # cells that are looked at to tell what the map is like
 JUMP_BELOW = 0.3  # turns round corners for a free cell, up to which jumping is the faster
 
 
@@ -245,7 +245,7 @@ class SearchGrid:
     def _pack(self, top: int, left: int, bottom: int, right: int) -> None:
         rows, columns = self.lines
         jump_kernel.pack(self._near, rows, top, left, bottom, right)
-        jump_kernel.pack(self._near.T, columns, left, top, right, bottom)
+        jump_kernel.pack(self._near, columns, left, top, right, bottom, upright=True)
 
     def _trace(self, goal: Cell) -> tuple[Cells, float]:
         return labels.trace(self._labels, self._stamp, self._width, self._node(goal))
