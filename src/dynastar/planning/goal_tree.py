@@ -30,7 +30,7 @@ class GoalTree:
     def __init__(self, near: Bytes) -> None:
         self.near = near
         self.labels = np.zeros(near.size, np.int64)
-        self.again = np.zeros(near.size, np.int64)  # costs the pages that are written to
+        self.again = np.zeros(0, np.int64)  # made when it is wanted, and costs the pages written to
         self.stamp = 0
         self._tree: _Tree | None = None
         self._way = (
@@ -41,6 +41,10 @@ class GoalTree:
         self._heads = np.empty(bucket_kernel.BUCKETS, np.int32)
         self._keys = np.empty(1024, np.int64)
         self._nodes = np.empty(1024, np.int32)
+
+    def forget(self) -> None:
+        """Makes the next search one from nothing."""
+        self._tree = None
 
     def changed(self, top: int, left: int, bottom: int, right: int, opened: bool) -> None:
         """Takes notice that ``near`` is another in a window, and whether cells have opened there."""
@@ -69,6 +73,8 @@ class GoalTree:
         if tree_kernel.stands(self.labels[start], tree.stamp):
             self._way = -1, start, tree.stamp
             return True, 0
+        if not self.again.size:
+            self.again = np.zeros(self.near.size, np.int64)
         last, meeting, expanded, self._keys, self._nodes = tree_kernel.search_again(
             near, width, self.labels, tree.stamp, tree.start, goal,
             self.again, self.stamp, start, self._keys, self._nodes,

@@ -57,7 +57,7 @@ class SearchGrid:
         self._sums: npt.NDArray[np.int32] | None = None
         self._lines: tuple[jump_kernel.Words, jump_kernel.Words] | None = None
         self._jumps: bool | None = None
-        self._labels = np.zeros(self._near.size, np.int64)
+        self._labels = np.zeros(0, np.int64)  # made when a search wants it
         self._stamp = 0
         self._heads = np.empty(bucket_kernel.BUCKETS, np.int32)
         self._pool = np.empty(1024, np.int64)  # or the heap's keys
@@ -130,6 +130,11 @@ class SearchGrid:
         if self._tree is not None:
             self._tree.changed(top + 1, left + 1, end + 1, side + 1, bool((change < 0).any()))
 
+    def forget(self) -> None:
+        """Drops what is known of ways to the last goal: the next search begins from nothing."""
+        if self._tree is not None:
+            self._tree.forget()
+
     def search(
         self,
         start_rc: Cell,
@@ -143,9 +148,9 @@ class SearchGrid:
         dijkstra, astar, jump and auto find the shortest way of the 8-connected grid, within 3e-7 of
         its length: all round, towards the goal, by jump points, or as fits the map. Where auto does
         not jump, it searches from the goal, and to the same goal the next time only what cells that
-        closed meanwhile have cut off. weighted and improved are Eqs. 2-3 with the terms of
-        ``heuristic``; weighted with a weight of 1 is the traditional A* on the improved one's
-        kernel, as an ablation wants it.
+        closed meanwhile have cut off (see ``forget``). weighted and improved are Eqs. 2-3 with the
+        terms of ``heuristic``; weighted with a weight of 1 is the traditional A* on the improved
+        one's kernel, as an ablation wants it.
 
         Raises OutOfMap, StartOccupied, GoalOccupied or NoPath; ConfigError for an unknown name.
         """
@@ -183,7 +188,10 @@ class SearchGrid:
         """Whether the last search or flood expanded a cell."""
         node = self._node(self._inside(cell, "cell"))
         known, stamp = self._last
-        return (int(known[node]) & (labels.STAMP_BITS | 1)) == stamp << labels.STAMP_SHIFT | 1
+        return (
+            known.size > 0
+            and (int(known[node]) & (labels.STAMP_BITS | 1)) == stamp << labels.STAMP_SHIFT | 1
+        )
 
     def way_to(self, cell: Cell) -> Cells:
         """The way (n, 2) to a cell that the last flood expanded; NoPath for any other."""
@@ -200,8 +208,8 @@ class SearchGrid:
         self, start: Cell, goal: Cell | None, algorithm: str, heuristic: HeuristicConfig
     ) -> tuple[bool, int]:
         """Whether the goal was found, and how many cells were expanded."""
-        if self._stamp == labels.MAX_STAMP:
-            self._labels[:] = 0
+        if self._stamp == labels.MAX_STAMP or not self._labels.size:
+            self._labels = np.zeros(self._near.size, np.int64)
             self._stamp = 0
         self._stamp += 1
         self._last = self._labels, self._stamp
