@@ -192,3 +192,41 @@ def test_what_blocks_under_a_layer_is_the_maps_and_the_seen_and_all_off_the_map(
         cell = np.floor(grid.frame.points_to_grid(point[None]))[0].astype(int)
         inside = (cell >= 0).all() and (cell < made.prior.shape).all()
         assert under[row, column] == (not inside or made.blocked[tuple(cell)])
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.7])
+@pytest.mark.parametrize("seed", range(4))
+def test_the_chart_takes_over_cell_by_cell_what_the_layer_shows(yaw, seed):
+    rng = np.random.default_rng(seed)
+    values = np.where(rng.random((60, 80)) < 0.1, -1, 0).astype(np.int8)
+    grid = room(values, yaw=yaw)
+    made = chart(grid)
+    layer = ObstacleLayer()
+    layer.follow(*rng.uniform(-2.0, 4.0, 2))
+    seen, cleared = made.seen.copy(), made.cleared.copy()
+    a, (x0, y0) = layer.config.resolution, layer.origin
+    for _ in range(3):
+        layer.states[:] = rng.choice([0, 0, 0, SEEN_FREE, SEEN_OCCUPIED], layer.states.shape)
+        shown = {SEEN_FREE: set(), SEEN_OCCUPIED: set()}
+        for row, column in np.argwhere(layer.states > 0):
+            x, y = x0 + (column + 0.5) * a, y0 + (row + 0.5) * a
+            cell = tuple(math.floor(i) for i in grid.frame.to_grid(x, y))
+            if all(0 <= i < n for i, n in zip(cell, seen.shape, strict=True)):
+                shown[layer.states[row, column]].add(cell)
+        before = seen.copy(), cleared.copy()
+        for cell in shown[SEEN_FREE]:
+            seen[cell] = False
+            cleared[cell] |= grid.unknown[cell]
+        for cell in shown[SEEN_OCCUPIED]:
+            seen[cell] |= not made.known.mask[cell]
+        changed = made.take_in(layer)
+        assert changed == ((seen != before[0]).any() or (cleared != before[1]).any())
+        assert (made.seen == seen).all()
+        assert (made.cleared == cleared).all()
+    for planner in made.planners:
+        assert (planner.blocked == made.blocked).all()
+    far = ObstacleLayer()
+    far.follow(500.0, 500.0)
+    far.states[:] = SEEN_OCCUPIED
+    assert not made.take_in(far)
+    assert made.blocked_under(far).all()

@@ -188,23 +188,32 @@ def roll_out(
 
 
 @njit(cache=True)
+def per_sum(terms, refused, j):
+    """One over the sum of term ``j`` over the admissible samples, 0 if that is 0."""
+    total = 0.0
+    for i in range(len(refused)):
+        if refused[i] == ADMISSIBLE:
+            total += terms[i, j]
+    return 1.0 / total if total > 1e-9 else 0.0
+
+
+@njit(cache=True)
 def normalise_and_choose(terms, refused, weights, by_sum, score):
     """Eq. 9 over the admissible samples: G into ``score`` (n,), the best index or -1.
 
     ``by_sum`` divides each term by its sum over the admissible samples, else the terms stay as they
     are, each over its fixed range. Refused samples score -inf.
     """
-    n = len(refused)
-    scale = np.ones(4)
+    scale = (1.0, 1.0, 1.0, 1.0)
     if by_sum:
-        for j in range(4):
-            total = 0.0
-            for i in range(n):
-                if refused[i] == ADMISSIBLE:
-                    total += terms[i, j]
-            scale[j] = 1.0 / total if total > 1e-9 else 0.0
+        scale = (
+            per_sum(terms, refused, HEADING),
+            per_sum(terms, refused, DIST),
+            per_sum(terms, refused, VEL),
+            per_sum(terms, refused, SIMI),
+        )
     best = -1
-    for i in range(n):
+    for i in range(len(refused)):
         if refused[i] != ADMISSIBLE:
             score[i] = -np.inf
             continue
