@@ -283,3 +283,17 @@ def observed_free(gaps, angle_min, increment, full_circle, sensor, centres):
     past = np.minimum(np.abs(sector - np.round(sector)), math.tau / abs(increment) - sector)
     across = past * abs(increment) * distance
     return distance <= reach, (across < 1e-9) | (np.abs(distance - reach) < 1e-9)
+
+
+def straight_lines(clear, points):
+    """The shortest way's length from the first point to the last by edges that are ``clear``, or inf."""
+    length = dict.fromkeys(range(len(points)), math.inf) | {0: 0.0}
+    left = set(length)
+    while left:
+        here = min(left, key=length.get)
+        left.remove(here)
+        for there in left:
+            step = math.dist(points[here], points[there])
+            if length[here] + step < length[there] and clear(points[here], points[there]):
+                length[there] = length[here] + step
+    return length[len(points) - 1]

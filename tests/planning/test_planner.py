@@ -53,7 +53,7 @@ def test_a_turned_map_turns_the_plan():
 
 
 def test_without_smoothing_the_path_is_the_grid_path():
-    made = GridPlanner(room(), 0.0, config=PlannerConfig(smoothing=False)).plan((0, 0), (1.9, 0))
+    made = GridPlanner(room(), 0.0, config=PlannerConfig(smoothing="none")).plan((0, 0), (1.9, 0))
     assert (made.path.points == made.grid_path.points).all()
 
 
@@ -168,3 +168,17 @@ def test_where_a_path_is_blocked():
     assert planner.path_blocked_at(made.path.points) is None
     planner.mark(6, 9, np.ones((2, 1), dtype=bool))
     assert 0.0 < planner.path_blocked_at(made.path.points) < made.path.length
+
+
+def test_at_any_angle_the_path_is_no_longer_than_the_taut_one():
+    start, goal = (0.33, 0.21), (1.72, 0.18)
+    taut, lines = (
+        GridPlanner(room(), 0.08, config=PlannerConfig(smoothing=smoothing, rounding=0.0)).plan(
+            start, goal
+        )
+        for smoothing in ("taut", "any-angle")
+    )
+    assert lines.path.length <= taut.path.length + 1e-9
+    assert tuple(lines.path.points[-1]) == goal
+    cells = room().frame.points_to_grid(lines.path.points)
+    assert clearance(room().blocked(), cells) >= 0.8 - 1e-6

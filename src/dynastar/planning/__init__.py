@@ -1,5 +1,6 @@
 """Global planning (section III): searches, the improved heuristic, smoothing."""
 
+from dynastar.planning.any_angle import straighten
 from dynastar.planning.heuristic import PLANNERS, HeuristicConfig
 from dynastar.planning.planner import GridPlanner, Plan, PlannerConfig, plan, warm_up
 from dynastar.planning.search import ALGORITHMS, SearchGrid, SearchResult
@@ -18,5 +19,6 @@ __all__ = [
     "plan",
     "segment_clear",
     "smooth",
+    "straighten",
     "warm_up",
 ]

@@ -4,7 +4,7 @@ import functools
 import math
 import time
 from dataclasses import dataclass
-from typing import Annotated, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +14,7 @@ from dynastar.config import Field, choose
 from dynastar.errors import ConfigError, GoalOccupied, NoPath, OutOfMap, StartOccupied
 from dynastar.grid import OccupancyGrid, Unknown
 from dynastar.path import Path
+from dynastar.planning.any_angle import straighten
 from dynastar.planning.escape import reach_of_escape, ways_out
 from dynastar.planning.heuristic import HeuristicConfig
 from dynastar.planning.search import (
@@ -36,7 +37,10 @@ class PlannerConfig(NamedTuple):
 
     planner: Annotated[str, Field("dijkstra, astar, jump, auto, weighted or improved")] = "improved"
     heuristic: HeuristicConfig = HeuristicConfig()
-    smoothing: Annotated[bool, Field("whether the path is pulled taut")] = True
+    smoothing: Annotated[
+        Literal["taut", "any-angle", "none"],
+        Field("the path is pulled taut, or also the shortest near it at any angle; or stays"),
+    ] = "taut"
     rounding: Annotated[float, Field("where a corner's rounding may begin", "m", 0.0, 10.0)] = 0.5
 
 
@@ -167,9 +171,12 @@ class GridPlanner:
         main = _without_repeats(np.vstack([lead[-1:], centres, [goal]]))
         grid_line = np.vstack([lead, main[1:]])
         line = grid_line
-        if self.config.smoothing:
+        if self.config.smoothing != "none":
             rounding = self.config.rounding / self.grid.resolution
             lead = smooth(self._blocked, lead, 0.0)
+            if self.config.smoothing == "any-angle":
+                taut = smooth(self._blocked, main, self._radius_cells)
+                main = straighten(self._blocked, main, self._radius_cells, taut)
             line = np.vstack([lead, smooth(self._blocked, main, self._radius_cells, rounding)[1:]])
         time_ms = 1e3 * (time.perf_counter() - began)
         lead_steps = np.diff(lead, axis=0)
