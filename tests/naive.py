@@ -270,7 +270,8 @@ def spare_gap(movers, spread, radius, where, times, moves, ahead):
 
 
 def observed_free(gaps, angle_min, increment, full_circle, sensor, centres):
-    """Whether points (k, 2) lie within their sector's gap (m), and whether on the verge of another."""
+    """Whether points (k, 2) lie within their sector's gap (m); how far off the next beam, in beams;
+    and whether just at the gap's end, or at the sensor."""
     x, y, theta = sensor
     dx, dy = centres[:, 0] - x, centres[:, 1] - y
     distance = np.hypot(dx, dy)
@@ -281,8 +282,7 @@ def observed_free(gaps, angle_min, increment, full_circle, sensor, centres):
     seen = (sector < n) | full_circle
     reach = np.where(seen, gaps[beam], 0.0)
     past = np.minimum(np.abs(sector - np.round(sector)), math.tau / abs(increment) - sector)
-    across = past * abs(increment) * distance
-    return distance <= reach, (across < 1e-9) | (np.abs(distance - reach) < 1e-9)
+    return distance <= reach, past, np.minimum(distance, np.abs(distance - reach)) < 1e-9
 
 
 def straight_lines(clear, points):

@@ -73,9 +73,10 @@ class Path:
         return self._at(np.minimum(start + spacing * np.arange(count), stop))
 
     def _at(self, s: Floats) -> Floats:
-        return np.column_stack(
-            [np.interp(s, self.arc, self.points[:, 0]), np.interp(s, self.arc, self.points[:, 1])]
-        )
+        found = np.empty((len(s), 2))
+        for axis in (0, 1):
+            found[:, axis] = np.interp(s, self.arc, self.points[:, axis])
+        return found
 
     def project(self, x: float, y: float, low: float = 0.0, high: float = np.inf) -> float:
         """Metres along the path of its point nearest to (x, y), looked for from ``low`` to ``high``."""
@@ -86,14 +87,14 @@ class Path:
         i = max(int(np.searchsorted(self.arc, first - 1e-9)) - 1, 0)
         j = int(np.searchsorted(self.arc, last + 1e-9)) + 1  # the segments that are looked at
         points, arc = self.points[i:j], self.arc[i:j]
-        a, step, length = points[:-1], points[1:] - points[:-1], arc[1:] - arc[:-1]
-        along = ((x - a[:, 0]) * step[:, 0] + (y - a[:, 1]) * step[:, 1]) / np.maximum(
-            length, 1e-12
-        )
-        s = np.clip(arc[:-1] + np.clip(along, 0.0, length), first, last)
-        s = np.clip(s, arc[:-1], arc[1:])
-        foot = a + step * ((s - arc[:-1]) / np.maximum(length, 1e-12))[:, None]
-        return float(s[np.argmin(np.hypot(foot[:, 0] - x, foot[:, 1] - y))])
+        a, begin, end = points[:-1], arc[:-1], arc[1:]
+        step, length = points[1:] - a, np.maximum(end - begin, 1e-12)
+        rel = np.array((x, y)) - a
+        along = (rel[:, 0] * step[:, 0] + rel[:, 1] * step[:, 1]) / length
+        low_s, high_s = np.maximum(begin, first), np.minimum(end, last)
+        s = np.minimum(np.maximum(begin + along, low_s), high_s)
+        off = rel - step * ((s - begin) / length)[:, None]
+        return float(s[np.argmin(off[:, 0] * off[:, 0] + off[:, 1] * off[:, 1])])
 
 
 @dataclass(frozen=True, eq=False)

@@ -138,7 +138,8 @@ class Tracker:
         age = now - self._tracks[:, kernels.T_SEEN]
         moving = self._tracks[:, kernels.T_MOVING] > 0
         kept = self._tracks[age <= np.where(moving, config.coast, 0.35)]
-        self._tracks = np.vstack([kept, self._born(found[~taken], now)])
+        born = found[~taken]
+        self._tracks = np.vstack([kept, self._born(born, now)]) if len(born) else kept
         self._tracks[len(kept) :, kernels.T_CLUSTER] = -1.0
         self.movers = self._confirmed()
         return kernels.on_tracks(points, self._tracks, found, 0.1)
