@@ -11,7 +11,7 @@ import signal
 import statistics
 import sys
 import threading
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from importlib import import_module
@@ -163,7 +163,7 @@ def run_suite(name: str, suite: Suite, options: Options, progress: bool = False)
     workers = min(options.workers, max(len(jobs), 1))
     with tqdm(total=len(jobs), desc=name, unit="mission", disable=not progress) as bar:
         rows: list[dict[str, Any]] = []
-        for row in map(fly, jobs) if workers == 1 else _spread(fly, jobs, workers):
+        for row in map(fly, jobs) if workers == 1 else spread(fly, jobs, workers):
             rows.append(row)
             bar.set_postfix(arrived=sum(row["outcome"] == "arrived" for row in rows), refresh=False)
             bar.update()
@@ -202,13 +202,14 @@ def _fly(suite: str | Suite, options: Options, job: tuple[Mission, int]) -> dict
     return {**again, "preset": options.preset, **row}
 
 
-def _spread(
-    fly: "partial[dict[str, Any]]", jobs: list[tuple[Mission, int]], workers: int
+def spread(
+    work: Callable[[Any], dict[str, Any]], jobs: Sequence[Any], workers: int
 ) -> Iterator[dict[str, Any]]:
+    """The rows that ``work`` makes of the jobs, in their order, by so many processes."""
     context = multiprocessing.get_context("spawn")
     pool = ProcessPoolExecutor(workers, context, initializer=_settle)
     try:
-        yield from pool.map(fly, jobs, chunksize=max(1, min(16, len(jobs) // (8 * workers))))
+        yield from pool.map(work, jobs, chunksize=max(1, min(16, len(jobs) // (8 * workers))))
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
 

@@ -2,7 +2,7 @@
 
 from dynastar.planning.any_angle import straighten
 from dynastar.planning.heuristic import PLANNERS, HeuristicConfig
-from dynastar.planning.planner import GridPlanner, Plan, PlannerConfig, plan, warm_up
+from dynastar.planning.planner import GridPlanner, Plan, PlannerConfig, plan, warm_up, warm_up_rest
 from dynastar.planning.search import ALGORITHMS, SearchGrid, SearchResult
 from dynastar.planning.segments import segment_clear
 from dynastar.planning.smoothing import smooth
@@ -21,4 +21,5 @@ __all__ = [
     "smooth",
     "straighten",
     "warm_up",
+    "warm_up_rest",
 ]

@@ -304,6 +304,19 @@ def warm_up() -> None:
     first_contact(mask_bytes(blocked), np.ones((2, 2)), 0.5)
 
 
+def warm_up_rest() -> None:
+    """The same for what not every plan needs: smoothing at any angle, and searching again."""
+    rng = np.random.default_rng(0)
+    blocked = rng.random((30, 30)) < 0.3
+    blocked[[0, -1]] = blocked[:, [0, -1]] = False  # so many corners, and yet a way round
+    grid = SearchGrid(blocked)
+    way = grid.search((0, 0), (29, 29), "auto").cells
+    straighten(blocked, way + 0.5, 0.0)
+    row, column = map(int, way[3])
+    grid.update(row, column, [[True]])
+    grid.search((0, 0), (29, 29), "auto")
+
+
 def _without_repeats(line: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """A polyline (n, 2) without points that are where the one before is."""
     steps = np.abs(np.diff(line, axis=0)).max(axis=1)

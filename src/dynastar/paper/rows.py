@@ -1,0 +1,66 @@
+"""Rows of an experiment, one a job: made by all cores, kept as they come, gone on with where they end."""
+
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from tqdm import tqdm
+
+from dynastar.bench.runner import spread
+from dynastar.io.files import jsonable, written_aside
+
+
+def collect(
+    name: str,
+    work: Callable[[Any], dict[str, Any]],
+    jobs: Sequence[Any],
+    file: Path,
+    settings: dict[str, Any],
+    workers: int = 1,
+    progress: bool = False,
+) -> list[dict[str, Any]]:
+    """A row for every job, in the jobs' order; those that ``file`` has are not made again.
+
+    The file holds JSON by lines: the settings first, then each row with its job. Other settings, or a
+    file that is none of ours, begin anew; a line that was cut off in writing is dropped.
+    """
+    done = _kept(file, settings)
+    left = [job for job in jobs if _key(job) not in done]
+    lines = [settings, *({"job": json.loads(key), "row": row} for key, row in done.items())]
+    with written_aside(file) as aside:
+        text = "".join(json.dumps(jsonable(line)) + "\n" for line in lines)
+        aside.write_text(text, encoding="utf-8")
+    with (
+        file.open("a", encoding="utf-8") as kept,
+        tqdm(
+            total=len(jobs), initial=len(jobs) - len(left), desc=name, disable=not progress
+        ) as bar,
+    ):
+        rows = map(work, left) if workers == 1 else spread(work, left, min(workers, len(left) or 1))
+        for job, row in zip(left, rows, strict=True):
+            kept.write(json.dumps(jsonable({"job": job, "row": row})) + "\n")
+            kept.flush()
+            done[_key(job)] = row
+            bar.update()
+    return [done[_key(job)] for job in jobs]
+
+
+def _key(job: Any) -> str:
+    return json.dumps(jsonable(job))
+
+
+def _kept(file: Path, settings: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    if not file.is_file():
+        return {}
+    done: dict[str, dict[str, Any]] = {}
+    try:
+        first, *lines = file.read_text(encoding="utf-8").splitlines()
+        if json.loads(first) != jsonable(settings):
+            return {}
+        for line in lines:
+            entry = json.loads(line)
+            done[_key(entry["job"])] = entry["row"]
+    except (ValueError, KeyError, TypeError):  # cut off, or none of ours
+        pass
+    return done

@@ -1,0 +1,42 @@
+import json
+
+from dynastar.paper.rows import collect
+
+SETTINGS = {"table": 1, "seed": 0}
+calls = []
+
+
+def square(job):
+    calls.append(job)
+    return {"square": job[1] ** 2}
+
+
+def made(file, jobs, settings=SETTINGS):
+    calls.clear()
+    rows = collect("test", square, jobs, file, settings)
+    assert [row["square"] for row in rows] == [job[1] ** 2 for job in jobs]
+    return len(calls)
+
+
+def test_what_is_done_is_not_done_again(tmp_path):
+    file = tmp_path / "deep" / "rows.jsonl"
+    jobs = [("a", n) for n in range(6)]
+    assert made(file, jobs[:4]) == 4
+    assert made(file, jobs) == 2
+    assert made(file, jobs[::-1]) == 0
+    assert made(file, jobs, {**SETTINGS, "seed": 1}) == 6
+
+
+def test_a_line_that_was_cut_off_is_made_again(tmp_path):
+    file = tmp_path / "rows.jsonl"
+    jobs = [("a", n) for n in range(4)]
+    made(file, jobs)
+    text = file.read_text()
+    file.write_text(text[:-9])
+    assert made(file, jobs) == 1
+    assert file.read_text() == text
+    file.write_text("no JSON\n" + text)
+    assert made(file, jobs) == 4
+    lines = [json.loads(line) for line in file.read_text().splitlines()]
+    assert lines[0] == SETTINGS
+    assert len(lines) == 5
