@@ -14,7 +14,7 @@ from dynastar.dwa.clearance_kernels import (
     polygon_distance,
 )
 from dynastar.dwa.dwa import Body, Margins
-from dynastar.robot import Footprint, Limits, box
+from dynastar.robot import Footprint, Limits, box, slew
 
 RESOLUTION, SIDE = 0.05, 80
 DISC, BOX = Footprint.disc(0.3), box(0.5, 0.4)
@@ -105,6 +105,47 @@ def test_a_clear_arc_is_clear_everywhere(seed, theta, length, angle, footprint):
         assert along[-1] >= margin + left - 1e-6
     else:
         assert min(along) <= margin + RESOLUTION
+
+
+@given(
+    st.integers(0, 10**6),
+    st.floats(-3, 3),
+    st.tuples(st.floats(-0.5, 1.5), st.floats(-1.5, 1.5)),
+    st.tuples(st.floats(-0.5, 1.5), st.floats(-1.5, 1.5)),
+    st.sampled_from([DISC, BOX]),
+)
+@settings(max_examples=300, deadline=None)
+def test_a_certified_command_keeps_its_clearance_all_the_way(seed, theta, now, wanted, footprint):
+    field, centres = world(seed, 0.004)
+    margins, period = Margins(0.05, 0.1, 0.1), 0.2
+    around, body = round_about(field), body_of(footprint)
+    allowed = footprint_clearance(around, body, 0.5, 2.0, 2.0, math.cos(theta), math.sin(theta))
+    (a_v, a_w), (b_v, b_w) = (
+        (LIMITS.v_accel, LIMITS.omega_accel),
+        (LIMITS.v_brake, LIMITS.omega_brake),
+    )
+    v, omega = slew(now[0], wanted[0], a_v, b_v, period), slew(now[1], wanted[1], a_w, b_w, period)
+    state = (2.0, 2.0, theta, *now)
+    code = stop_kernels.certify(
+        around, body, margins, allowed, 0.0, state, v, omega, LIMITS, period
+    )
+    if code != stop_kernels.ADMISSIBLE:
+        return
+    pose, speeds = (2.0, 2.0, theta), now
+    half = 0.5 * period
+    pieces = []
+    for _ in range(2):
+        later = slew(speeds[0], v, a_v, b_v, half), slew(speeds[1], omega, a_w, b_w, half)
+        pieces.append((0.5 * half * (speeds[0] + later[0]), 0.5 * half * (speeds[1] + later[1])))
+        speeds = later
+    stop = max(abs(speeds[0]) / b_v, abs(speeds[1]) / b_w)
+    pieces.append((0.5 * stop * speeds[0], 0.5 * stop * speeds[1]))
+    for length, angle in pieces:
+        for share in np.linspace(0.0, 1.0, 15):
+            at = stop_kernels.arc(*pose, share * length, share * angle)
+            least = true_clearance(centres, footprint, *at)
+            assert least >= min(0.05, allowed) - 0.25 * RESOLUTION
+        pose = stop_kernels.arc(*pose, length, angle)
 
 
 def certify(field, movers, v0, omega0, v, omega, period=0.1, linger=0.0):

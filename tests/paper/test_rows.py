@@ -35,6 +35,11 @@ def test_a_line_that_was_cut_off_is_made_again(tmp_path):
     file.write_text(text[:-9])
     assert made(file, jobs) == 1
     assert file.read_text() == text
+    lines = text.splitlines(keepends=True)
+    file.write_text(
+        "".join([*lines[:2], lines[2][:-5] + "\n", '{"job": ["a", 2], "row": null}\n', *lines[4:]])
+    )
+    assert made(file, jobs) == 2
     file.write_text("no JSON\n" + text)
     assert made(file, jobs) == 4
     lines = [json.loads(line) for line in file.read_text().splitlines()]

@@ -217,6 +217,8 @@ def test_auto_finds_the_shortest_way_again_whatever_changed(seed, changes):
         assert found.cost == pytest.approx(lengths[goal], rel=1e-6)
         assert_legal(occupied, found.cells, start, goal)
         assert len(found.explored) == found.expanded
+        with pytest.raises(NoPath, match="flood"):
+            grid.way_to(start)
 
 
 def test_what_closes_near_the_start_costs_little_to_go_round():

@@ -220,7 +220,13 @@ def _add_paper(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
         epilog=PAPER_EXAMPLES,
     )
     paper.add_argument("table", choices=("table1",), help="which; table1 is all there is so far")
-    paper.add_argument("--maps", type=count, default=1000, metavar="N", help="default 1000")
+    paper.add_argument(
+        "--maps",
+        type=count,
+        default=1000,
+        metavar="N",
+        help="in fours, one of each kind (default 1000)",
+    )
     paper.add_argument("--seed", type=seed, default=0, metavar="N")
     paper.add_argument("--out", type=path, metavar="DIR", help="default out/paper")
     paper.add_argument("--workers", type=count, metavar="N", help="processes (default: all cores)")

@@ -89,7 +89,7 @@ def clear_of_closed(arcs, state, v, span, around, nearest, must, enough, at_end)
         if d < nearest and k < checked:
             return d, True
         if d > enough + step:
-            k += int(min((d - enough) / step, 1e9))
+            k += max(1, int(min((d - enough) / step, 1e9)))
             continue
         if k == span.steps - 1 or (k < span.steps and not at_end):
             least = min(least, d)
@@ -120,7 +120,7 @@ def clear_of_movers(arcs, state, v, span, movers, reach, ahead, must, cap, at_en
             dx, dy = mx + vx * after - px, my + vy * after - py
             square = dx * dx + dy * dy
             if square > (enough + step) * (enough + step):
-                k += int(min((math.sqrt(square) - enough) / step, 1e9))
+                k += max(1, int(min((math.sqrt(square) - enough) / step, 1e9)))
                 continue
             if square <= need * need and after <= must:
                 met = True

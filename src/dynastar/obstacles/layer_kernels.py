@@ -97,7 +97,7 @@ def mark_free(
     n, far = len(gaps), gaps.max()
     if increment == 0.0 or far <= 0.0:
         return
-    squares = np.full(n + 2, -1.0)  # of the gap after each beam, from one before the first
+    squares = np.full(n + 3, -1.0)  # of the gap after each beam, from one before the first
     for i in range(n):
         if gaps[i] > 0.0:
             squares[i + 1] = gaps[i] * gaps[i]

@@ -8,7 +8,8 @@ from typing import Any
 from tqdm import tqdm
 
 from dynastar.bench.runner import spread
-from dynastar.io.files import jsonable, written_aside
+from dynastar.errors import InputError
+from dynastar.io.files import MAX_TEXT_BYTES, jsonable, read_bytes, written_aside
 
 
 def collect(
@@ -23,7 +24,7 @@ def collect(
     """A row for every job, in the jobs' order; those that ``file`` has are not made again.
 
     The file holds JSON by lines: the settings first, then each row with its job. Other settings, or a
-    file that is none of ours, begin anew; a line that was cut off in writing is dropped.
+    file that is none of ours, begin anew; a line that was damaged or cut off in writing is dropped.
     """
     done = _kept(file, settings)
     left = [job for job in jobs if _key(job) not in done]
@@ -51,16 +52,23 @@ def _key(job: Any) -> str:
 
 
 def _kept(file: Path, settings: dict[str, Any]) -> dict[str, dict[str, Any]]:
-    if not file.is_file():
+    if not file.exists():
         return {}
-    done: dict[str, dict[str, Any]] = {}
+    first, *lines = (
+        read_bytes(file, MAX_TEXT_BYTES, InputError).decode(errors="replace").split("\n")
+    )
+    if _parsed(first) != jsonable(settings):
+        return {}
+    entries = [_parsed(line) for line in lines]
+    return {
+        _key(entry["job"]): entry["row"]
+        for entry in entries
+        if isinstance(entry, dict) and "job" in entry and isinstance(entry.get("row"), dict)
+    }
+
+
+def _parsed(line: str) -> Any:
     try:
-        first, *lines = file.read_text(encoding="utf-8").splitlines()
-        if json.loads(first) != jsonable(settings):
-            return {}
-        for line in lines:
-            entry = json.loads(line)
-            done[_key(entry["job"])] = entry["row"]
-    except (ValueError, KeyError, TypeError):  # cut off, or none of ours
-        pass
-    return done
+        return json.loads(line)
+    except ValueError:  # damaged, or cut off in writing
+        return None

@@ -1,5 +1,6 @@
 """Table I: traditional against improved A*, expanded cells, path length and time, over many maps."""
 
+import hashlib
 import time
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -8,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from dynastar import compiled
+import dynastar
 from dynastar.paper.families import KINDS, Map, draw
 from dynastar.paper.rows import collect
 from dynastar.planning import HeuristicConfig, SearchGrid, SearchResult, smooth, straighten
@@ -55,9 +56,13 @@ RATIOS: dict[str, Callable[[Row], float]] = {
 def run(
     maps: int, seed: int, folder: Path, workers: int = 1, size: int = 40, progress: bool = False
 ) -> list[Row]:
-    """The rows of so many maps, as many of each kind; kept in ``folder`` and gone on with from there."""
+    """The rows of so many maps or up to three more, as many of each kind.
+
+    They are kept in ``folder`` and gone on with from there, by the same version.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
     jobs = [job for kind in KINDS for job in _numbers(kind, -(-maps // len(KINDS)), seed, size)]
-    settings = {"table": 1, "seed": seed, "size": size, "kernels": compiled.cache().name}
+    settings = {"table": 1, "seed": seed, "size": size, "version": _version()}
     work = partial(_row, seed=seed, size=size)
     return collect("table1", work, jobs, folder / "table1.jsonl", settings, workers, progress)
 
@@ -93,6 +98,14 @@ def _numbers(kind: str, count: int, seed: int, size: int) -> list[tuple[str, int
             found.append((kind, number))
         number += 1
     return found
+
+
+def _version() -> str:
+    """A digest of all sources, for any of them may change what comes out."""
+    digest = hashlib.sha256()
+    for source in sorted(Path(dynastar.__file__).parent.rglob("*.py")):
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
 
 
 def _row(job: tuple[str, int], seed: int, size: int) -> Row:

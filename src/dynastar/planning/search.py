@@ -165,6 +165,7 @@ class SearchGrid:
             algorithm = "jump" if self._prefers_jumps() else "astar"
             if algorithm == "astar" and terms.estimate == "octile":
                 result = self._again(start, goal)
+                # If there is none, ``reached`` has to tell what can be reached from the start.
                 if result is not None:
                     return result._replace(explored=self.expanded_cells() if explored else None)
         found, expanded = self._run(start, goal, algorithm, terms)
@@ -195,7 +196,7 @@ class SearchGrid:
 
     def way_to(self, cell: Cell) -> Cells:
         """The way (n, 2) to a cell that the last flood expanded; NoPath for any other."""
-        if not self.reached(cell):
+        if self._last[0] is not self._labels or not self.reached(cell):
             raise NoPath(f"cell {cell} was not reached by the last flood: expected one that was")
         return self._trace(cell)[0]
 
