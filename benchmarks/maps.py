@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.bench.families import corridors
 from dynastar.io.movingai import load_movingai_map
 
 Mask = npt.NDArray[np.bool_]
@@ -50,34 +51,7 @@ def rooms(n: int, size: int, seed: int) -> Mask:
 
 def maze(n: int, corridor: int, seed: int) -> Mask:
     """A maze with one way between any two places (depth first), corridors so many cells wide."""
-    rng = np.random.default_rng([3, n, corridor, seed])
-    pitch = corridor + 1
-    k = (n - 1) // pitch
-    occupied = np.ones((n, n), bool)
-    seen = np.zeros((k, k), bool)
-    seen[0, 0] = True
-    occupied[1 : 1 + corridor, 1 : 1 + corridor] = False
-    stack = [(0, 0)]
-    while stack:
-        row, column = stack[-1]
-        ways = [
-            (row + i, column + j)
-            for i, j in ((0, 1), (1, 0), (0, -1), (-1, 0))
-            if 0 <= row + i < k and 0 <= column + j < k and not seen[row + i, column + j]
-        ]
-        if not ways:
-            stack.pop()
-            continue
-        there = ways[int(rng.integers(len(ways)))]
-        seen[there] = True
-        top, bottom = sorted((row, there[0]))
-        left, right = sorted((column, there[1]))
-        occupied[
-            1 + top * pitch : 1 + bottom * pitch + corridor,
-            1 + left * pitch : 1 + right * pitch + corridor,
-        ] = False
-        stack.append(there)
-    return occupied
+    return corridors(np.random.default_rng([3, n, corridor, seed]), n, corridor)
 
 
 def office(n: int, seed: int) -> Mask:

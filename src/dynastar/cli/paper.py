@@ -6,10 +6,10 @@ import os
 from pathlib import Path
 from typing import Any
 
+from dynastar.bench import table1
 from dynastar.cli.show import as_json
 from dynastar.errors import InputError
 from dynastar.io.files import write_json, written_aside
-from dynastar.paper import table1
 
 # Table I of the paper, on its one map: improved over traditional.
 PRINTED = {"expanded_ratio": 0.499, "search_time_ratio": 0.305, "length_ratio": 0.972}

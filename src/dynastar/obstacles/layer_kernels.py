@@ -140,13 +140,20 @@ def mark_hits(hit_at, x0, y0, resolution, points, moving, now):
 
 
 @njit(cache=True)
-def mark_disc(stamps, x0, y0, resolution, x, y, radius, value, only_below):
-    """Writes ``value`` into the cells with their centre in a disc where the stamp is below a bound."""
-    rows, columns = stamps.shape
+def box_of_disc(shape, x0, y0, resolution, x, y, radius):
+    """The first and last row and column of a window of that shape that a disc may reach into."""
+    rows, columns = shape
     first = max(0, int(math.floor((y - radius - y0) / resolution)))
     last = min(rows - 1, int(math.floor((y + radius - y0) / resolution)))
     low = max(0, int(math.floor((x - radius - x0) / resolution)))
     high = min(columns - 1, int(math.floor((x + radius - x0) / resolution)))
+    return first, last, low, high
+
+
+@njit(cache=True)
+def mark_disc(stamps, x0, y0, resolution, x, y, radius, value, only_below):
+    """Writes ``value`` into the cells with their centre in a disc where the stamp is below a bound."""
+    first, last, low, high = box_of_disc(stamps.shape, x0, y0, resolution, x, y, radius)
     for row in range(first, last + 1):
         dy = y0 + (row + 0.5) * resolution - y
         for column in range(low, high + 1):
@@ -158,11 +165,7 @@ def mark_disc(stamps, x0, y0, resolution, x, y, radius, value, only_below):
 @njit(cache=True)
 def keep_free(free_at, hit_at, x0, y0, resolution, x, y, radius, now):
     """Stamps ``now`` into the cells of a disc that were seen free since they were hit."""
-    rows, columns = free_at.shape
-    first = max(0, int(math.floor((y - radius - y0) / resolution)))
-    last = min(rows - 1, int(math.floor((y + radius - y0) / resolution)))
-    low = max(0, int(math.floor((x - radius - x0) / resolution)))
-    high = min(columns - 1, int(math.floor((x + radius - x0) / resolution)))
+    first, last, low, high = box_of_disc(free_at.shape, x0, y0, resolution, x, y, radius)
     for row in range(first, last + 1):
         dy = y0 + (row + 0.5) * resolution - y
         for column in range(low, high + 1):

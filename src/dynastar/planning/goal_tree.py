@@ -21,6 +21,14 @@ class _Tree(NamedTuple):
     expanded: int
 
 
+class _Way(NamedTuple):
+    """Where a way runs: its last node before the tree's (-1: none), the tree's, and the tree's stamp."""
+
+    last: int
+    meeting: int
+    stamp: int
+
+
 class GoalTree:
     """The last search from a goal, and what of it still stands.
 
@@ -33,11 +41,7 @@ class GoalTree:
         self.again = np.zeros(0, np.int64)  # made when it is wanted, and costs the pages written to
         self.stamp = 0
         self._tree: _Tree | None = None
-        self._way = (
-            -1,
-            0,
-            0,
-        )  # its last node before the tree's (-1: none), that, and the tree's stamp
+        self._way = _Way(-1, 0, 0)
         self._heads = np.empty(bucket_kernel.BUCKETS, np.int32)
         self._keys = np.empty(1024, np.int64)
         self._nodes = np.empty(1024, np.int32)
@@ -68,10 +72,10 @@ class GoalTree:
                 near, width, self.labels, self.stamp, goal, start, True, self._heads, self._keys
             )
             self._tree = _Tree(self.stamp, goal, start, expanded) if found else None
-            self._way = -1, start, self.stamp
+            self._way = _Way(-1, start, self.stamp)
             return found, expanded
         if tree_kernel.stands(self.labels[start], tree.stamp):
-            self._way = -1, start, tree.stamp
+            self._way = _Way(-1, start, tree.stamp)
             return True, 0
         if not self.again.size:
             self.again = np.zeros(self.near.size, np.int64)
@@ -79,7 +83,7 @@ class GoalTree:
             near, width, self.labels, tree.stamp, tree.start, goal,
             self.again, self.stamp, start, self._keys, self._nodes,
         )  # fmt: skip
-        self._way = last, meeting, tree.stamp
+        self._way = _Way(last, meeting, tree.stamp)
         if last < 0 or 2 * expanded > tree.expanded:  # too little of it is left
             self._tree = None
         return last >= 0, expanded
@@ -98,4 +102,4 @@ class GoalTree:
     @property
     def searched(self) -> npt.NDArray[np.int64]:
         """The labels that the last search wrote under ``stamp``."""
-        return self.labels if self._way[2] == self.stamp else self.again
+        return self.labels if self._way.stamp == self.stamp else self.again

@@ -63,8 +63,20 @@ def rooms(rng: np.random.Generator, size: int) -> Mask:
 
 
 def maze(rng: np.random.Generator, size: int) -> Mask:
-    """Corridors one to three cells wide, depth first, and a tenth of the walls left out again."""
+    """Corridors one to three cells wide, and a tenth of the walls left out again."""
     corridor = int(rng.integers(1, 4))
+    occupied = corridors(rng, size, corridor)
+    k = (size - 1) // (corridor + 1)
+    for _ in range(k * k // 10):
+        here = (int(rng.integers(k)), int(rng.integers(k)))
+        near = _beside(here, k)
+        if near:
+            _clear(occupied, here, near[int(rng.integers(len(near)))], corridor + 1)
+    return occupied
+
+
+def corridors(rng: np.random.Generator, size: int, corridor: int) -> Mask:
+    """A maze with one way between any two places (depth first), corridors so many cells wide."""
     pitch = corridor + 1
     k = (size - 1) // pitch
     occupied = np.ones((size, size), np.bool_)
@@ -82,11 +94,6 @@ def maze(rng: np.random.Generator, size: int) -> Mask:
         seen[there] = True
         _clear(occupied, here, there, pitch)
         stack.append(there)
-    for _ in range(k * k // 10):
-        here = (int(rng.integers(k)), int(rng.integers(k)))
-        near = _beside(here, k)
-        if near:
-            _clear(occupied, here, near[int(rng.integers(len(near)))], pitch)
     return occupied
 
 

@@ -1,6 +1,6 @@
 import json
 
-from dynastar.paper.rows import collect
+from dynastar.bench.rows import collect
 
 SETTINGS = {"table": 1, "seed": 0}
 calls = []

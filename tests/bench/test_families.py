@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from dynastar.paper.families import KINDS, draw
+from dynastar.bench.families import KINDS, draw
 
 
 @pytest.mark.parametrize("size", [20, 40, 128])

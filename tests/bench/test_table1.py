@@ -3,9 +3,9 @@ import json
 import numpy as np
 import pytest
 
+from dynastar.bench import table1
+from dynastar.bench.families import KINDS, Map, draw
 from dynastar.cli import main
-from dynastar.paper import table1
-from dynastar.paper.families import KINDS, Map, draw
 from naive import shortest
 
 PINNED = {

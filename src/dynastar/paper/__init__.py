@@ -1,1 +1,0 @@
-"""The paper's tables and figures, remade on thousands of maps."""
