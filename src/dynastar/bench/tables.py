@@ -1,0 +1,74 @@
+"""A table of an experiment: for the terminal, for a page, for the docs."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+Cell = str | int | float | None
+
+
+class Table(NamedTuple):
+    """Columns are (heading, format of a number); the first column's cells are words, None is blank.
+
+    ``notes`` say under the table what its words mean and where it comes from.
+    """
+
+    name: str
+    title: str
+    columns: tuple[tuple[str, str], ...]
+    rows: Sequence[tuple[Cell, ...]]
+    notes: str = ""
+
+    @property
+    def cells(self) -> list[list[str]]:
+        """The headings and each row, as words."""
+        formats = [format_ for _, format_ in self.columns]
+        return [
+            [heading for heading, _ in self.columns],
+            *(
+                [_words(cell, format_) for cell, format_ in zip(row, formats, strict=True)]
+                for row in self.rows
+            ),
+        ]
+
+
+def as_text(table: Table) -> str:
+    """The table in columns, for a terminal."""
+    cells = table.cells
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    lines = [
+        "  ".join(
+            cell.ljust(width) if at == 0 else cell.rjust(width)
+            for at, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in cells
+    ]
+    rule = "-" * max(map(len, lines))
+    return "\n".join(filter(None, [table.title, rule, lines[0], rule, *lines[1:], table.notes]))
+
+
+def as_markdown(table: Table) -> str:
+    """The table for the docs."""
+    first, *rows = table.cells
+    aligned = [":--", *("--:" for _ in first[1:])]
+    lines = [f"| {' | '.join(row)} |" for row in (first, aligned, *rows)]
+    return "\n\n".join(filter(None, [f"**{table.title}**", "\n".join(lines), table.notes]))
+
+
+def fill(document: str, name: str, text: str, where: Path) -> str:
+    """A document whose part between ``<!-- name -->`` and ``<!-- end name -->`` is ``text`` now.
+
+    Raises ValueError, naming ``where``, if it has no such part.
+    """
+    begin, end = f"<!-- {name} -->", f"<!-- end {name} -->"
+    before, found, rest = document.partition(begin)
+    _, closed, after = rest.partition(end)
+    if not (found and closed):
+        raise ValueError(f"{where} has no part between {begin} and {end}")
+    return f"{before}{begin}\n{text}\n{end}{after}"
+
+
+def _words(cell: Cell, format_: str) -> str:
+    if cell is None:
+        return ""
+    return cell if isinstance(cell, str) else format(cell, format_)

@@ -1,0 +1,14 @@
+from dynastar.bench.own_maps import drawn, own_forty, own_twenty
+from dynastar.planning import SearchGrid
+
+
+def test_the_own_maps_have_a_way_from_corner_to_corner():
+    big, small = own_forty(), own_twenty()
+    assert big.occupied.shape == (40, 40)
+    assert small.shape == (20, 20)
+    assert len(SearchGrid(big.occupied).search(big.start, big.goal, "auto").cells) >= 40
+    assert len(SearchGrid(small).search((0, 0), (19, 19), "auto").cells) >= 20
+
+
+def test_the_last_line_of_a_picture_is_row_0():
+    assert drawn("..#\n#..").tolist() == [[True, False, False], [False, False, True]]
