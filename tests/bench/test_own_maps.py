@@ -1,4 +1,5 @@
 from dynastar.bench.own_maps import drawn, own_forty, own_twenty
+from dynastar.bench.paper import own_world
 from dynastar.planning import SearchGrid
 
 
@@ -12,3 +13,9 @@ def test_the_own_maps_have_a_way_from_corner_to_corner():
 
 def test_the_last_line_of_a_picture_is_row_0():
     assert drawn("..#\n#..").tolist() == [[True, False, False], [False, False, True]]
+
+
+def test_the_own_world_is_furnished_by_the_suites_rule():
+    made = own_world()
+    assert (made.grid.frame.x, made.grid.frame.y, made.grid.resolution) == (1.0, 1.0, 1.0)
+    assert (len(made.obstacles), len(made.movers), made.start[:2]) == (2, 1, (1.5, 1.5))
