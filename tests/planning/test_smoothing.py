@@ -90,8 +90,49 @@ def test_the_string_is_taut_round_a_wall():
     points = SearchGrid(blocked).search((15, 5), (15, 55)).cells + 0.5
     best = math.hypot(14.5, 24.5) + 1.0 + math.hypot(14.5, 24.5)
     assert length(points) > 1.03 * best
-    assert length(smooth(blocked, points, 0.0)) < 1.01 * best
-    assert length(smooth(blocked, points, 0.0, 3.0)) < 1.003 * best
+    assert length(smooth(blocked, points, 0.0)) == pytest.approx(best, abs=1e-5)
+    assert length(smooth(blocked, points, 0.0, 3.0)) == pytest.approx(best, abs=1e-5)
+
+
+@pytest.mark.parametrize("radius", [1.5, 4.0, 7.3])
+def test_a_disc_goes_round_a_block_on_tangents_and_hardly_more(radius):
+    blocked = np.zeros((40, 60), dtype=bool)
+    blocked[:20, 30] = True
+    points = SearchGrid(inflate(blocked, radius)).search((10, 10), (10, 50)).cells + 0.5
+    away = math.hypot(19.5, 9.5)  # from start and goal to the block's upper corners
+    tangent = math.sqrt(away**2 - radius**2)
+    turned = math.atan2(9.5, 19.5) + math.asin(radius / away)  # off the level, at each corner
+    best = 2.0 * (tangent + radius * turned) + 1.0
+    assert best - 1e-9 <= length(smooth(blocked, points, radius)) <= 1.01 * best
+
+
+@given(st.integers(0, 10**9), st.sampled_from([0.0, 0.7, 2.2]))
+@settings(max_examples=80, deadline=None)
+def test_no_corner_of_a_taut_string_can_be_cut(seed, radius):
+    rng = np.random.default_rng(seed)
+    blocked = rng.random((24, 30)) < (0.25 if radius < 0.5 else 0.03)
+    inflated = inflate(blocked, radius)
+    free = np.argwhere(~inflated)
+    if len(free) == 0:
+        return
+    try:
+        cells = SearchGrid(inflated).search(tuple(free[0]), tuple(free[-1]), "improved").cells
+    except NoPath:
+        return
+    line = smooth(blocked, cells + 0.5, radius)
+    for a, b, c in zip(line, line[1:], line[2:], strict=False):
+        cosine = np.dot(b - a, c - b) / (math.dist(a, b) * math.dist(b, c))
+        half = 0.5 * math.acos(max(min(cosine, 1.0), -1.0))
+        round_it = 2.0 * radius * (math.tan(half) - half)  # what an arc would save
+        for before, after in itertools.product((0.1, 0.3, 1.0), repeat=2):
+            p, q = b + before * (a - b), b + after * (c - b)
+            saved = math.dist(p, b) + math.dist(b, q) - math.dist(p, q)
+            steps = math.ceil(4.0 * max(math.dist(p, b), math.dist(b, q)))  # nothing lies between
+            swept = [
+                (b + i / steps * (p - b), b + i / steps * (q - b)) for i in range(1, steps + 1)
+            ]
+            if saved >= 0.02 + round_it:
+                assert not all(segment_clear(blocked, *cut, radius) for cut in swept)
 
 
 def test_rounding_makes_a_corner_gentler():

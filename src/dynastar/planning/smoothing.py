@@ -1,71 +1,21 @@
 """Smoothing (end of section III.A): the string is pulled taut, then its corners are rounded."""
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
 from dynastar.compiled import njit
 from dynastar.planning.segments import Bytes, is_clear, mask_bytes
+from dynastar.planning.taut_kernel import pulled_bend
 
 Points = npt.NDArray[np.float64]
 
-PULLS = 8  # at most; most strings are taut after four
-SHORTER = 1e-4  # cells; less is no gain
+ROUNDS = 30  # in which every corner is pulled; each may halve the corners of open space
+FINEST = 0.5  # cells between two corners, or they become one
 BEVELS = 2  # rounds in which every corner is cut, so at most 4 points come of one
 SMALLEST_CUT = 0.05  # cells
 STRAIGHT_ENOUGH = 0.9998  # cosine of a bend (about 1 degree) that needs no rounding
-
-
-@njit(cache=True)
-def clear_between(blocked: Bytes, points: Points, i: int, j: int, radius: float) -> bool:
-    """Whether a disc can go straight from point ``i`` to point ``j``."""
-    return is_clear(blocked, points[i, 0], points[i, 1], points[j, 0], points[j, 1], radius)
-
-
-@njit(cache=True)
-def pull(blocked: Bytes, points: Points, radius: float) -> Points:
-    """From every point straight on to one far ahead that can be seen.
-
-    Looking ahead doubles its stride while it sees and then bisects, so it costs the logarithm of
-    what it skips; the next point is always within reach.
-    """
-    kept = np.empty_like(points)
-    kept[0] = points[0]
-    count, here, last = 1, 0, len(points) - 1
-    while here < last:
-        seen, unseen = here + 1, last + 1
-        while seen < last:
-            ahead = min(2 * seen - here, last)
-            if not clear_between(blocked, points, here, ahead, radius):
-                unseen = ahead
-                break
-            seen = ahead
-        while unseen - seen > 1 and seen < last:
-            middle = (seen + unseen) // 2
-            if clear_between(blocked, points, here, middle, radius):
-                seen = middle
-            else:
-                unseen = middle
-        kept[count] = points[seen]
-        count += 1
-        here = seen
-    return kept[:count].copy()
-
-
-@njit(cache=True)
-def dense_reversed(points: Points) -> Points:
-    """The polyline backwards, with a point at least every cell."""
-    pieces = np.empty(len(points) - 1, np.int64)
-    for i in range(len(points) - 1):
-        step = points[i + 1] - points[i]
-        pieces[i] = max(1, int(np.ceil(np.hypot(step[0], step[1]))))
-    dense = np.empty((pieces.sum() + 1, 2))
-    at = len(dense) - 1
-    for i in range(len(points) - 1):
-        for j in range(pieces[i]):
-            dense[at] = points[i] + (points[i + 1] - points[i]) * (j / pieces[i])
-            at -= 1
-    dense[0] = points[-1]
-    return dense
 
 
 @njit(cache=True)
@@ -78,22 +28,101 @@ def polyline_length(points: Points) -> float:
 
 
 @njit(cache=True)
+def bends(points: Points, line: Points) -> int:
+    """Copies a polyline's ends and the points where it bends to ``line``; how many they are."""
+    count = 0
+    for i in range(len(points)):
+        if 0 < i < len(points) - 1:
+            by, bx = points[i, 0] - points[i - 1, 0], points[i, 1] - points[i - 1, 1]
+            ay, ax = points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1]
+            if bx * ay == by * ax and by * ay + bx * ax > 0.0:
+                continue
+        line[count, 0], line[count, 1] = points[i, 0], points[i, 1]
+        count += 1
+    return count
+
+
+@njit(cache=True)
+def gap(points: Points, i: int, y: float, x: float) -> float:
+    """From a polyline's point ``i`` to another place."""
+    return math.hypot(y - points[i, 0], x - points[i, 1])
+
+
+@njit(cache=True)
 def pull_taut(blocked: Bytes, points: Points, radius: float) -> Points:
-    """Pulls forwards and backwards, letting go anywhere on the string, until it gets no shorter."""
-    taut = pull(blocked, points, radius)
-    length = polyline_length(taut)
-    backwards, idle = False, 0
-    for _ in range(PULLS):
-        if len(taut) < 3 or idle == 2:
+    """Pulls every corner, round after round, until none gets shorter.
+
+    A round looks at a corner once, and again only where it or a neighbour has moved: what it pulls
+    straight it leaves to the next one to pull on, so long ways through open space stay cheap.
+    """
+    room = 2 * len(points) + 16
+    line, pulled = np.empty((room, 2)), np.empty((room, 2))
+    moved, fresh = np.ones(room, np.bool_), np.empty(room, np.bool_)
+    kept = np.empty(room, np.bool_)
+    n = bends(points, line)
+    for _ in range(ROUNDS):
+        pulled[0], fresh[0], kept[0] = line[0], False, moved[0]
+        count, changed = 1, False
+        for i in range(1, n):
+            y, x = line[i, 0], line[i, 1]
+            fresh_here = False
+            if count >= 2:
+                a, b = count - 2, count - 1
+                if moved[i] or fresh[a] or fresh[b] or kept[a] or kept[b]:
+                    ay, ax, by, bx = pulled[a, 0], pulled[a, 1], pulled[b, 0], pulled[b, 1]
+                    how, py, px, qy, qx = pulled_bend(blocked, ay, ax, by, bx, y, x, radius)
+                    if how == 0:
+                        count = b
+                        fresh[a] = fresh_here = changed = True
+                    elif how > 0 and count + 2 < room:
+                        pulled[b, 0], pulled[b, 1] = py, px
+                        fresh[b] = changed = True
+                        if how == 2:
+                            pulled[count, 0], pulled[count, 1] = qy, qx
+                            fresh[count], kept[count] = True, False
+                            count += 1
+            pulled[count, 0], pulled[count, 1] = y, x
+            fresh[count], kept[count] = fresh_here, moved[i]
+            count += 1
+        n = count
+        line, pulled = pulled, line
+        moved, fresh = fresh, moved
+        if not changed:
             break
-        tried = pull(blocked, dense_reversed(taut), radius)
-        tried_length = polyline_length(tried)
-        backwards = not backwards
-        if tried_length < length - SHORTER:
-            taut, length, idle = tried, tried_length, 0
-        else:
-            taut, idle = taut[::-1].copy(), idle + 1
-    return taut[::-1].copy() if backwards else taut
+    return line[:n].copy()
+
+
+@njit(cache=True)
+def join_close(blocked: Bytes, points: Points, radius: float) -> Points:
+    """Two corners closer than ``FINEST`` become the one where the lines to them meet, if that is clear."""
+    line = points.copy()
+    count = 1
+    i = 1
+    while i < len(points):
+        if (
+            count >= 2
+            and i + 1 < len(points)
+            and gap(points, i, line[count - 1, 0], line[count - 1, 1]) < FINEST
+        ):
+            a, b, c, d = line[count - 2], line[count - 1], points[i], points[i + 1]
+            u, t = b - a, c - d
+            across = u[1] * t[0] - u[0] * t[1]
+            if across != 0.0:
+                s = ((d[1] - a[1]) * t[0] - (d[0] - a[0]) * t[1]) / across
+                y, x = a[0] + s * u[0], a[1] + s * u[1]
+                if (
+                    s > 0.0
+                    and gap(line, count - 1, y, x) < FINEST
+                    and is_clear(blocked, a[0], a[1], y, x, radius)
+                    and is_clear(blocked, y, x, d[0], d[1], radius)
+                ):
+                    line[count - 1, 0], line[count - 1, 1] = y, x
+                    i += 1
+                    continue
+        line[count] = points[i]
+        count += 1
+        i += 1
+    return line[:count].copy()
 
 
 @njit(cache=True)
@@ -127,6 +156,9 @@ def bevel(blocked: Bytes, points: Points, radius: float, largest: float) -> Poin
 def smooth_kernel(blocked: Bytes, points: Points, radius: float, rounding: float) -> Points:
     """``smooth`` on arrays of one type."""
     smoothed = pull_taut(blocked, points, radius)
+    joined = join_close(blocked, smoothed, radius)
+    if polyline_length(joined) <= polyline_length(points):
+        smoothed = joined
     if rounding > 0.0:
         for _ in range(BEVELS):
             smoothed = bevel(blocked, smoothed, radius, rounding)

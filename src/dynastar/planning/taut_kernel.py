@@ -1,0 +1,174 @@
+"""Where a string runs taut round one of its corners.
+
+Let the string come from a, bend at b and go on to c. What it can be caught on lies in the triangle
+a, b, c, and of that only convex corners of blocked cells. Pulled, it leaves a along the first line
+that touches such a corner as it swings from b towards c, and comes to c along the first that does
+from there; those two lines meet in a nearer b, and where they touch two corners, a third line cuts
+that bend off, too. A disc's centre keeps the radius from each corner.
+"""
+
+import math
+
+import numpy as np
+
+from dynastar.compiled import njit
+from dynastar.planning.segments import Bytes, is_clear
+
+CLOSE = 1e-7  # cells further than the radius, for the arithmetic's sake
+HERE = 1e-5  # cells; what touches so near to where a line begins does not say where it goes
+SHORTER = 1e-4  # cells; less is no gain
+LEFT = -1  # the bend stays as it is
+
+# How many corners the string has in place of b, and the first and the last of them (y, x, y, x).
+Bend = tuple[int, float, float, float, float]
+
+
+@njit(cache=True)
+def touches_before(
+    ay: float, ax: float, by: float, bx: float, cy: float, cx: float,
+    oy: float, ox: float, qy: int, qx: int, side: float, radius: float, uy: float, ux: float,
+) -> tuple[bool, float, float]:  # fmt: skip
+    """Whether a disc's line from a, swinging from b to c, touches the corner o before the unit line u.
+
+    With the unit direction of the line that does. ``side`` is 1 where it swings to the left, -1 to
+    the right. From o, the blocked cell lies towards q, and has to lie that way of the line. Only what
+    lies on the line's part from a to b - c can be touched.
+    """
+    py, px = oy - ay, ox - ax
+    square = py * py + px * px
+    along = math.sqrt(max(square - radius * radius, 0.0))
+    if along < HERE:
+        return False, uy, ux
+    ty = (along * py - side * radius * px) / square
+    tx = (along * px + side * radius * py) / square
+    if side * (ux * ty - uy * tx) >= 0.0 or side * (tx * qy - ty * qx) < 0.0:
+        return False, uy, ux
+    wy, wx, ey, ex = by - ay, bx - ax, cy - by, cx - bx
+    if side * (wx * ty - wy * tx) < -1e-6 * math.hypot(wy, wx):  # outside of a - b
+        return False, uy, ux
+    across = side * (tx * ey - ty * ex)
+    if across <= 0.0 or along * across >= side * (wx * ey - wy * ex):  # beyond b - c
+        return False, uy, ux
+    return True, ty, tx
+
+
+@njit(cache=True)
+def columns_between(
+    ay: float, ax: float, by: float, bx: float, low: float, high: float, left: float, right: float
+) -> tuple[float, float]:
+    """The columns left to right, and those of the part of a - b whose rows are from low to high."""
+    begin, end = 0.0, 1.0
+    if by != ay:
+        s, t = (low - ay) / (by - ay), (high - ay) / (by - ay)
+        begin, end = max(min(s, t), 0.0), min(max(s, t), 1.0)
+    if begin > end or max(ay, by) < low or min(ay, by) > high:
+        return left, right
+    s, t = ax + begin * (bx - ax), ax + end * (bx - ax)
+    return min(left, s, t), max(right, s, t)
+
+
+@njit(cache=True)
+def convex_corner(blocked: Bytes, row: int, column: int) -> tuple[bool, int, int]:
+    """Whether a cell's low corner is a blocked cell's alone, or that of two across; and which way it lies.
+
+    (0, 0) stands for both ways.
+    """
+    low, low_right = np.int64(blocked[row - 1, column - 1]), np.int64(blocked[row - 1, column])
+    high, high_right = np.int64(blocked[row, column - 1]), np.int64(blocked[row, column])
+    count = low + low_right + high + high_right
+    if count == 1:
+        return (
+            True,
+            int(high + high_right - low - low_right),
+            int(low_right + high_right - low - high),
+        )
+    return count == 2 and low == high_right, 0, 0
+
+
+@njit(cache=True)
+def taut_bend(
+    blocked: Bytes, ay: float, ax: float, by: float, bx: float, cy: float, cx: float, radius: float
+) -> Bend:
+    """The bends that a taut string has between a and c, where it has one at b now; see ``Bend``."""
+    wy, wx, vy, vx = by - ay, bx - ax, cy - ay, cx - ax
+    turn, length = wx * vy - wy * vx, math.hypot(vy, vx)
+    if length < 1e-9 or abs(turn) < 1e-9:
+        return 0, 0.0, 0.0, 0.0, 0.0
+    side = 1.0 if turn > 0.0 else -1.0
+    r = radius + CLOSE
+    uy, ux = vy / length, vx / length  # from a, and from c
+    ty, tx = -uy, -ux
+    oy = ox = qy = qx = 0.0  # what they touch
+    caught = False
+    rows, columns = blocked.shape
+    for row in range(
+        max(math.ceil(min(ay, by, cy) - r), 1), min(math.floor(max(ay, by, cy) + r), rows - 1) + 1
+    ):
+        low, high = row - r, row + r
+        left, right = columns_between(ay, ax, by, bx, low, high, math.inf, -math.inf)
+        left, right = columns_between(by, bx, cy, cx, low, high, left, right)
+        left, right = columns_between(ay, ax, cy, cx, low, high, left, right)
+        if left > right:
+            continue
+        first, last = max(math.ceil(left - r), 1), min(math.floor(right + r), columns - 1)
+        for column in range(first, last + 1):
+            convex, gy, gx = convex_corner(blocked, row, column)
+            if not convex:
+                continue
+            y, x = float(row), float(column)
+            hit, uy, ux = touches_before(ay, ax, by, bx, cy, cx, y, x, gy, gx, side, r, uy, ux)
+            if hit:
+                oy, ox, caught = y, x, True
+            hit, ty, tx = touches_before(cy, cx, by, bx, ay, ax, y, x, gy, gx, -side, r, ty, tx)
+            if hit:
+                qy, qx, caught = y, x, True
+    if not caught:
+        return 0, 0.0, 0.0, 0.0, 0.0
+    across = ux * ty - uy * tx
+    if side * across >= -1e-12:
+        return LEFT, 0.0, 0.0, 0.0, 0.0
+    s = (vx * ty - vy * tx) / across
+    my, mx = ay + s * uy, ax + s * ux
+    dy, dx = qy - oy, qx - ox
+    apart = math.hypot(dy, dx)
+    from_a, from_c = ux * dy - uy * dx, tx * dy - ty * dx
+    if apart == 0.0 or abs(from_a) < 1e-9 or abs(from_c) < 1e-9:
+        return 1, my, mx, my, mx
+    # The line along both corners, on the side of b.
+    zy, zx = oy - side * r * dx / apart, ox + side * r * dy / apart
+    at_a = ((zx - ax) * dy - (zy - ay) * dx) / from_a
+    at_c = ((zx - cx) * dy - (zy - cy) * dx) / from_c
+    if 0.0 < at_a < s and 0.0 < at_c < math.hypot(my - cy, mx - cx):
+        return 2, ay + at_a * uy, ax + at_a * ux, cy + at_c * ty, cx + at_c * tx
+    return 1, my, mx, my, mx
+
+
+@njit(cache=True)
+def pulled_bend(
+    blocked: Bytes, ay: float, ax: float, by: float, bx: float, cy: float, cx: float, radius: float
+) -> Bend:
+    """What a pull makes of the bend at b: shorter, and clear for a disc that can go by b; see ``Bend``.
+
+    Where the taut string is caught by more than two corners, the bend is only cut, for the next pull
+    to go on with. ``LEFT`` stands first where nothing gets shorter.
+    """
+    how, py, px, qy, qx = taut_bend(blocked, ay, ax, by, bx, cy, cx, radius)
+    if how == LEFT or (how == 0 and is_clear(blocked, ay, ax, cy, cx, radius)):
+        return how, py, px, qy, qx
+    now = math.hypot(by - ay, bx - ax) + math.hypot(cy - by, cx - bx)
+    share = 1.0
+    while how > 0 and share > 0.05:
+        length = math.hypot(py - ay, px - ax) + math.hypot(qy - py, qx - px)
+        length += math.hypot(cy - qy, cx - qx)
+        if length > now - SHORTER:
+            break
+        if (
+            is_clear(blocked, ay, ax, py, px, radius)
+            and is_clear(blocked, qy, qx, cy, cx, radius)
+            and (how == 1 or is_clear(blocked, py, px, qy, qx, radius))
+        ):
+            return how, py, px, qy, qx
+        how, share = 2, 0.5 * share
+        py, px = by + share * (ay - by), bx + share * (ax - bx)
+        qy, qx = by + share * (cy - by), bx + share * (cx - bx)
+    return LEFT, 0.0, 0.0, 0.0, 0.0
