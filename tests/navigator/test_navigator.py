@@ -242,9 +242,7 @@ def test_the_target_by_distance_alone_lies_behind_the_corner():
 
 
 def test_a_path_planned_once_is_kept_whatever_comes():
-    replanned, once = (
-        Drive(room(), global_path=how, attempts=1) for how in ("replanned", "once")
-    )
+    replanned, once = (Drive(room(), global_path=how, attempts=1) for how in ("replanned", "once"))
     for drive in (replanned, once):
         drive.navigator.set_goal(Goal(6.5, 3.0))
         drive.tick()
