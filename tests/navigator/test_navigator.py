@@ -13,6 +13,7 @@ from dynastar.navigator import Navigator, NavigatorConfig
 from dynastar.navigator.config import PRESETS
 from dynastar.obstacles import MovingObstacle
 from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot
+from dynastar.simulation.lidar import LidarSimulator
 
 # -- goals -----------------------------------------------------------------------------------------
 
@@ -216,3 +217,59 @@ def test_a_preset_may_rule_out_driving_back():
         navigator = Navigator(room(), ROBOTS["paper"], PRESETS[preset])
         assert navigator.robot.limits.v_min == v_min
         assert navigator.passing.robot.limits.v_min == v_min
+
+
+# -- less than the whole ---------------------------------------------------------------------------
+
+BLOCK = (3.6, 2.0, 4.2, 4.0)
+
+
+def test_the_target_by_distance_alone_lies_behind_the_corner():
+    walled = room(8.0, 6.0, (2.2, 0.0, 2.4, 3.6))
+    ahead = {}
+    for how in ("visible", "distance"):
+        drive = Drive(walled, pose=(1.6, 3.0, math.pi / 2), target=how)
+        drive.navigator.set_goal(Goal(4.0, 1.5))
+        drive.tick()
+        path = drive.status.plan.path
+        ahead[how] = path.project(*drive.status.target)
+        assert math.dist(path.at(ahead[how]), drive.status.target) < 1e-6
+        assert drive.status.state == "following"
+        drive.until("arrived")
+    lookahead = NavigatorConfig().lookahead
+    assert ahead["visible"] < lookahead - 0.1
+    assert ahead["distance"] == pytest.approx(lookahead, abs=0.05)
+
+
+def test_a_path_planned_once_is_kept_whatever_comes():
+    replanned, once = (Drive(room(), global_path=how, attempts=1) for how in ("replanned", "once"))
+    for drive in (replanned, once):
+        drive.navigator.set_goal(Goal(6.5, 3.0))
+        drive.tick()
+        drive.lidar = LidarSimulator(ROUND.lidar, room(8.0, 6.0, BLOCK))
+    replanned.until("arrived")
+    assert replanned.status.replans >= 1
+    said = once.until("blocked", seconds=200.0)
+    assert said.count("recovering") > 0
+    assert (once.status.replans, once.status.plan_id) == (0, 1)
+    assert once.status.plan.path.turns == 0  # still the way through the block
+    once.navigator.set_goal(Goal(1.5, 4.5))
+    once.until("arrived")
+    assert once.status.plan_id == 2
+
+
+def test_without_a_global_path_the_line_to_the_goal_is_all():
+    alone = {"global_path": "straight", "target": "distance", "lookahead": 50.0}
+    free = Drive(room(), **alone)
+    free.navigator.set_goal([Goal(4.0, 4.5), Goal(6.5, 3.0)])
+    free.tick()
+    assert free.status.target == pytest.approx((4.0, 4.5))
+    free.until("arrived")
+    assert (free.status.plan, free.status.replans) == (None, 0)
+    assert math.dist(free.pose[:2], (6.5, 3.0)) < 0.3
+
+    cup = room(8.0, 6.0, (5.0, 1.5, 5.2, 4.5), (3.5, 1.3, 5.2, 1.5), (3.5, 4.5, 5.2, 4.7))
+    caught = Drive(cup, attempts=1, **alone)
+    caught.navigator.set_goal(Goal(6.5, 3.0))
+    caught.until("blocked", seconds=200.0)
+    assert caught.pose.x < 5.0

@@ -1,5 +1,6 @@
 """Rows of an experiment, one a job: made by all cores, kept as they come, gone on with where they end."""
 
+import hashlib
 import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -7,6 +8,7 @@ from typing import Any
 
 from tqdm import tqdm
 
+import dynastar
 from dynastar.bench.runner import spread
 from dynastar.errors import InputError
 from dynastar.io.files import MAX_TEXT_BYTES, jsonable, read_bytes, written_aside
@@ -45,6 +47,24 @@ def collect(
             done[_key(job)] = row
             bar.update()
     return [done[_key(job)] for job in jobs]
+
+
+def version(*modules: str) -> str:
+    """A digest of all that rows can depend on: the library, and the ``modules`` of bench named.
+
+    Of the rest of bench, of cli and of viewer nothing reaches a row.
+    """
+    package = Path(dynastar.__file__).parent
+    outside = {"cli", "viewer", "bench"}
+    sources = [
+        source
+        for source in package.rglob("*.py")
+        if source.relative_to(package).parts[0] not in outside
+    ]
+    digest = hashlib.sha256()
+    for source in sorted([*sources, *(package / "bench" / f"{name}.py" for name in set(modules))]):
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
 
 
 def _key(job: Any) -> str:

@@ -194,12 +194,17 @@ def totals(rows: list[dict[str, Any]], skipped: int) -> dict[str, Any]:
 def _fly(suite: str | Suite, options: Options, job: tuple[Mission, int]) -> dict[str, Any]:
     mission, repeat = job
     flown_by = load_suite(suite) if isinstance(suite, str) else suite
-    try:
-        row = flown_by.fly(mission, options, repeat)
-    except Exception as error:  # a failure is a row, whatever it is: none may go uncounted
-        row = {"outcome": "error", "reason": f"{type(error).__name__}: {error}"}
+    row = row_of(lambda: flown_by.fly(mission, options, repeat))
     again = {"number": mission.number, "repeat": repeat, "seed": options.seed + repeat}
     return {**again, "preset": options.preset, **row}
+
+
+def row_of(fly: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+    """The row that a mission comes to; one that raises has the outcome "error" and the reason."""
+    try:
+        return fly()
+    except Exception as error:  # a failure is a row, whatever it is: none may go uncounted
+        return {"outcome": "error", "reason": f"{type(error).__name__}: {error}"}
 
 
 def spread(

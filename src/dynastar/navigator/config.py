@@ -36,6 +36,14 @@ class NavigatorConfig(NamedTuple):
     lookahead: Annotated[float, Field("the target lies so far along the path", "m", 0.2, 50.0)] = (
         1.5
     )
+    target: Annotated[
+        Literal["visible", "distance"],
+        Field("the farthest point up to there that can be seen, or that point, seen or not"),
+    ] = "visible"
+    global_path: Annotated[
+        Literal["replanned", "once", "straight"],
+        Field("planned whenever need be, or for each goal once; or the straight line to the goal"),
+    ] = "replanned"
     planning_resolution: Annotated[float, Field("plan on cells no larger", "m", 0.01, 10.0)] = 0.1
     comfort: Annotated[float, Field("clearance a plan has to spare if it can", "m", 0.0, 5.0)] = 0.1
     deviation: Annotated[float, Field("replan when so far off the path", "m", 0.1, 50.0)] = 0.5

@@ -67,7 +67,7 @@ class Navigator:
         self.status = Status()
         self._goals: list[Goal] = []
         self._path: Path | None = None
-        self._s = 0.0
+        self._s = self._clear_from = 0.0
         self._commands = Commands(robot.limits, config.period, config.latency)
         self._waiting_since: float | None = None
         # So fast that it can stop for what comes into view at the edge of sight.
@@ -137,17 +137,21 @@ class Navigator:
     def _plan(self, state: RobotState, changed: bool) -> bool:
         """Keeps a path that leads to the goal; False if there is none for now."""
         here = (state.pose.x, state.pose.y)
+        if self.config.global_path == "straight":
+            self._follow(Path(np.array([here, self._goals[0][:2]])))
+            return True
         if self._path is None:
             return self._replan(state, self.recovery.reason or "a plan is needed")
         self._s = self._path.project(*here, low=self._s - 0.5, high=self._s + 2.0)
+        if self.config.global_path == "once":
+            return True
         if self.progress.unseen(state.stamp, 2.0) and self.recovery.may_replan(state.stamp):
             return self._replan(state, OUT_OF_SIGHT)
         foot = self._path.at(self._s)
         if math.dist(foot, here) > self.config.deviation:
             return self._replan(state, "avoiding led away from the path")
         if changed:
-            assert self.status.plan is not None
-            begin = max(self._s, self.status.plan.clear_from + 1e-3)
+            begin = max(self._s, self._clear_from + 1e-3)
             rest = self._path.points[self._path.arc > begin]
             if (
                 len(rest)
@@ -163,10 +167,7 @@ class Navigator:
             plan = self.chart.plan((state.pose.x, state.pose.y), (goal.x, goal.y), explored=True)
         except PlanningError as error:
             return self._no_plan(state, error)
-        self._path, self._s = plan.path, 0.0
-        self._profile = SpeedProfile(
-            plan.path, self.robot.limits, self.chart.speed_limit(points(plan.path))
-        )
+        self._follow(plan.path, plan.clear_from)
         if reason == OUT_OF_SIGHT:
             self.progress.rebase()
         else:
@@ -180,6 +181,11 @@ class Navigator:
             error=None,
         )
         return True
+
+    def _follow(self, path: Path, clear_from: float = 0.0) -> None:
+        """Takes a path, which is as clear as it should be from ``clear_from`` metres on."""
+        self._path, self._s, self._clear_from = path, 0.0, clear_from
+        self._profile = SpeedProfile(path, self.robot.limits, self.chart.speed_limit(points(path)))
 
     def _no_plan(self, state: RobotState, error: PlanningError) -> bool:
         """No way on the chart: what was seen may be gone, so forget it once and wait a little."""
@@ -204,12 +210,14 @@ class Navigator:
         goal = self._goals[0]
         tight = self.robot.footprint.inscribed + self.margins.standing
         clearances = (tight + config.comfort, tight)
-        target, seen = local_target(
-            self._path, self._s, (state.pose.x, state.pose.y), config.lookahead, clearances, around
-        )
-        assert self.status.plan is not None
-        if self._s < self.status.plan.clear_from - 0.05:  # first out of where it is too tight
-            target, seen = self._path.at(self.status.plan.clear_from), True
+        if config.target == "distance":
+            target, seen = self._path.at(self._s + config.lookahead), True
+        else:
+            target, seen = local_target(
+                self._path, self._s, state.pose[:2], config.lookahead, clearances, around
+            )
+        if self._s < self._clear_from - 0.05:  # first out of where it is too tight
+            target, seen = self._path.at(self._clear_from), True
         spare = self.window.clearance(around, state.pose) - self.margins.standing
         if spare < 0.25 * config.layer.resolution:
             target = leading_away(target, (state.pose.x, state.pose.y), around)
@@ -304,7 +312,7 @@ class Navigator:
         if step == "forget":
             self.senses.forget()
             self.chart.forget()
-        if step in ("forget", "replan"):
+        if step in ("forget", "replan") and self.config.global_path == "replanned":
             self._path = None
         self.progress.restart(state.stamp)
 

@@ -1,0 +1,218 @@
+"""Table III: the improved A* alone against the hybrid, over many worlds and on the own one."""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from operator import itemgetter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dynastar.bench import paper
+from dynastar.bench.rows import collect, version
+from dynastar.bench.runner import Options, choose_missions, row_of
+from dynastar.bench.table1 import spread_of
+from dynastar.bench.tables import Cell, Table
+from dynastar.grid import OccupancyGrid
+from dynastar.metrics import measure
+from dynastar.planning import GridPlanner, plan
+from dynastar.simulation import Scenario
+from dynastar.simulation import run as drive
+
+# As printed: path length, turning points.
+PRINTED = {"improved": (33, 7), "hybrid": (29, 4)}
+
+Row = dict[str, Any]
+
+
+def run(
+    missions: int,
+    seed: int,
+    folder: Path,
+    workers: int = 1,
+    progress: bool = False,
+    preset: str = "default",
+) -> list[Row]:
+    """The rows of the suite's first ``missions`` worlds that its rule does not leave out.
+
+    They are kept in ``folder`` and gone on with from there, by the same version.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    chosen, _ = choose_missions(paper, Options(missions=missions, seed=seed))
+    jobs = [mission.number for mission in chosen]
+    modules = ("table3", "paper", "own_maps")
+    settings = {"table": 3, "seed": seed, "preset": preset, "version": version(*modules)}
+    work = partial(_row, seed=seed, preset=preset)
+    return collect("table3", work, jobs, folder / "table3.jsonl", settings, workers, progress)
+
+
+def own_row(preset: str = "default", seed: int = 0) -> Row:
+    """The row of the project's own world; it has no number."""
+    return {"number": None, **_both(paper.own_world(), preset, seed)}
+
+
+def grid_way(scenario: Scenario) -> Row:
+    """The improved A* alone on the map as it is known: its way over cells, and what it would hit.
+
+    The robot is a point to it, as the paper's is. ``grid_free`` and ``grid_free_disc`` say whether
+    that point, and the robot, could follow it past what no map has, were the walker not there.
+    Where it turns every bend counts: next to a cell's metre the tolerance of ``turning_points``,
+    0.25 m, takes none away.
+    """
+    goal = scenario.goals[0]
+    way = plan(scenario.grid, scenario.start[:2], (goal.x, goal.y), "improved").grid_path
+    true = GridPlanner(_with_blocks(scenario), 0.0)
+    radius = scenario.robot.footprint.circumscribed
+    return {
+        "grid_length": way.length,
+        "grid_turning_points": way.turns,
+        "grid_free": true.path_blocked_at(way.points) is None,
+        "grid_free_disc": true.path_blocked_at(way.points, radius) is None,
+    }
+
+
+def length_ratio(row: Row) -> float:
+    """Of a mission that arrived: the driven length over the improved A*'s grid path's."""
+    return float(row["length"] / row["grid_length"])
+
+
+def turning_ratio(row: Row) -> float:
+    """The same of turning points; over one where the grid path has none."""
+    return float(row["turning_points"] / max(1, row["grid_turning_points"]))
+
+
+def summary(rows: Sequence[Row]) -> dict[str, Any]:
+    """What the rows add up to: outcomes of all missions, and the hybrid over the improved A*'s way.
+
+    Ratios and means are over the missions that arrived, whether that way is free or not; None if
+    none did.
+    """
+    arrived = [row for row in rows if row["outcome"] == "arrived"]
+
+    def counted(outcome: str) -> int:
+        return sum(row["outcome"] == outcome for row in rows)
+
+    def contacts(kind: str) -> int:
+        return sum(bool(row.get(f"contacts_{kind}")) for row in rows)
+
+    def mean(name: str) -> float | None:
+        return float(np.mean([row[name] for row in arrived])) if arrived else None
+
+    means = {name: mean(name) for name in ("length", "turning_points", "time")}
+    means |= {name: mean(name) for name in ("grid_length", "grid_turning_points")}
+
+    def of_means(name: str) -> float | None:
+        over, under = means[name], means[f"grid_{name}"]
+        return over / under if over is not None and under else None
+
+    return {
+        "missions": len(rows),
+        "arrived": len(arrived),
+        "contacts_moving": contacts("moving"),
+        "contacts_resting": contacts("resting"),
+        "timeouts": counted("timeout"),
+        "blocked": counted("blocked"),
+        "errors": counted("error"),
+        "length_ratio": spread_of([length_ratio(row) for row in arrived]) if arrived else None,
+        "turning_ratio": spread_of([turning_ratio(row) for row in arrived]) if arrived else None,
+        "length_ratio_of_means": of_means("length"),
+        "turning_ratio_of_means": of_means("turning_points"),
+        **{f"mean_{name}": value for name, value in means.items()},
+        "grid_hits": sum(not row["grid_free"] for row in rows),
+        "grid_hits_disc": sum(not row["grid_free_disc"] for row in rows),
+    }
+
+
+def tables(rows: Sequence[Row], own_row: Row) -> list[Table]:
+    """The own world's table in the paper's form, and the spread over many worlds."""
+    return [_own_table(own_row), _spread_table(rows)]
+
+
+def _own_table(row: Row) -> Table:
+    way = (row["grid_length"], row["grid_turning_points"])
+    driven = (row.get("length"), row.get("turning_points"))
+    lines: list[tuple[Cell, ...]] = [
+        ("improved A*, grid path", *way, *PRINTED["improved"]),
+        ("hybrid", *driven, *PRINTED["hybrid"]),
+    ]
+    if row["outcome"] == "arrived":
+        ratios = (length_ratio(row), turning_ratio(row), *_printed_ratios())
+        lines.append(("hybrid / improved A*", *(f"{ratio:.2f}" for ratio in ratios)))
+    hits = "free as it is" if row["grid_free_disc"] else "blocked by what the map does not have"
+    return Table(
+        "table3-own",
+        "Table III on the own 20 x 20 world",
+        (("", ""), ("length m", ".1f"), ("turns", "d"), ("paper m", "d"), ("paper turns", "d")),
+        lines,
+        f"The hybrid {row['outcome']}. The grid path is {hits}. Turns are bends over 10 degrees after "
+        "simplification at 0.25 m, for both.",
+    )
+
+
+def _spread_table(rows: Sequence[Row]) -> Table:
+    arrived = [row for row in rows if row["outcome"] == "arrived"]
+    found = summary(rows)
+    alone, hybrid = PRINTED["improved"], PRINTED["hybrid"]
+    ratios = _printed_ratios()
+    figures: dict[str, tuple[Callable[[Row], float], float]] = {
+        "improved A*, length m": (itemgetter("grid_length"), alone[0]),
+        "hybrid, length m": (itemgetter("length"), hybrid[0]),
+        "length, hybrid / improved A*": (length_ratio, ratios[0]),
+        "improved A*, turns": (itemgetter("grid_turning_points"), alone[1]),
+        "hybrid, turns": (itemgetter("turning_points"), hybrid[1]),
+        "turns, hybrid / improved A*": (turning_ratio, ratios[1]),
+    }
+    lines: list[tuple[Cell, ...]] = [
+        (name, *_five([figure(row) for row in arrived]), float(printed))
+        for name, (figure, printed) in figures.items()
+    ]
+    others = ", ".join(f"{found[name]} {name}" for name in ("timeouts", "blocked", "errors"))
+    return Table(
+        "table3",
+        f"Table III over {found['missions']} worlds",
+        (
+            ("", ""),
+            *(
+                (name, ".2f")
+                for name in ("median", "lower quartile", "upper", "p95", "worst", "paper")
+            ),
+        ),
+        lines,
+        f"{found['arrived']} of {found['missions']} arrived, {found['contacts_moving']} touched "
+        f"something while moving, {found['contacts_resting']} at rest; {others}. Figures are over "
+        f"those that arrived. The improved A*'s path alone would hit something unknown in "
+        f"{found['grid_hits']} worlds as a point, in {found['grid_hits_disc']} as the robot's disc.",
+    )
+
+
+def _printed_ratios() -> tuple[float, float]:
+    (length, turns), (hybrid_length, hybrid_turns) = PRINTED["improved"], PRINTED["hybrid"]
+    return hybrid_length / length, hybrid_turns / turns
+
+
+def _five(values: Sequence[float]) -> list[float | None]:
+    """Median, quartiles, 95th percentile and the largest; blank where there is nothing."""
+    if not values:
+        return [None] * 5
+    return [float(q) for q in np.quantile(values, (0.5, 0.25, 0.75, 0.95, 1.0))]
+
+
+def _row(number: int, seed: int, preset: str) -> Row:
+    made = paper.world(seed, number)
+    assert isinstance(made, Scenario)
+    return {"number": number, **_both(made, preset, seed)}
+
+
+def _both(scenario: Scenario, preset: str, seed: int) -> Row:
+    driven = Scenario(**{**vars(scenario), "preset": preset, "seed": seed})
+    return {**row_of(lambda: measure(drive(driven))._asdict()), **grid_way(scenario)}
+
+
+def _with_blocks(scenario: Scenario) -> OccupancyGrid:
+    """The map with the unknown blocks in it, which are whole cells."""
+    grid = scenario.grid
+    occupied = grid.occupied.copy()
+    for ring in scenario.obstacles:
+        row, column = grid.frame.to_grid(*np.mean(ring, axis=0))
+        occupied[int(row), int(column)] = True
+    return OccupancyGrid.from_occupied(occupied, grid.resolution, grid.frame.x, grid.frame.y)

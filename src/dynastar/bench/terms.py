@@ -1,0 +1,102 @@
+"""The terms of Eq. 2 on maps: how many cells each arm expands, for how long a way, in what time."""
+
+import time
+from collections.abc import Iterator, Sequence
+from functools import partial
+from itertools import count, islice
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dynastar.bench.arms import PLAIN, TERMS
+from dynastar.bench.families import KINDS, Map, draw
+from dynastar.bench.rows import collect, version
+from dynastar.bench.table1 import spread_of
+from dynastar.bench.tables import Cell, Table
+from dynastar.planning import HeuristicConfig, SearchGrid
+
+ROUNDS = 3  # each arm's best time of so many, in turns
+BASE = "Euclidean A*"  # the traditional one, which the others are compared with
+
+ARMS: dict[str, tuple[str, HeuristicConfig]] = {
+    BASE: ("weighted", PLAIN._replace(estimate="euclidean")),
+    "octile A*": ("weighted", PLAIN),
+    "weighted A*, w = 2": ("weighted", PLAIN._replace(weight=2.0)),
+    **{name: terms for name, terms in TERMS.items() if terms[1] != PLAIN},
+}
+MEASURED = ("expanded", "length", "seconds")
+
+Row = dict[str, Any]
+
+
+def run(
+    maps: int, seed: int, folder: Path, workers: int = 1, size: int = 40, progress: bool = False
+) -> list[Row]:
+    """The rows of so many maps or up to three more, as many of each kind.
+
+    They are kept in ``folder`` and gone on with from there, by the same version.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    each = -(-maps // len(KINDS))
+    jobs = [(kind, number) for kind in KINDS for number in _numbers(kind, each, seed, size)]
+    modules = ("terms", "arms", "families")
+    settings = {"table": "terms", "seed": seed, "size": size, "version": version(*modules)}
+    work = partial(_row, seed=seed, size=size)
+    return collect("terms", work, jobs, folder / "terms.jsonl", settings, workers, progress)
+
+
+def measure(drawn: Map) -> Row:
+    """One map's row: by arm the cells expanded, the length in cells, and the seconds it took."""
+    grid = SearchGrid(drawn.occupied)
+    row: Row = {"kind": drawn.kind, "number": drawn.number}
+    for _ in range(ROUNDS):
+        for arm, (algorithm, terms) in ARMS.items():
+            began = time.perf_counter()
+            found = grid.search(drawn.start, drawn.goal, algorithm, terms)
+            seconds = time.perf_counter() - began
+            before = row[arm]["seconds"] if arm in row else np.inf
+            figures = (found.expanded, found.cost, min(seconds, before))
+            row[arm] = dict(zip(MEASURED, figures, strict=True))
+    return row
+
+
+def summary(rows: Sequence[Row]) -> dict[str, dict[str, dict[str, float]]]:
+    """By arm, the ratios to the traditional A*: median, mean, 95th percentile and worst of each."""
+    return {
+        arm: {
+            f"{what}_ratio": spread_of([row[arm][what] / row[BASE][what] for row in rows])
+            for what in MEASURED
+        }
+        for arm in ARMS
+    }
+
+
+def tables(rows: Sequence[Row]) -> list[Table]:
+    """One line for each arm."""
+    shown = ("median", "mean", "worst")
+    lines: list[tuple[Cell, ...]] = [
+        (arm, *(ratios[f"{what}_ratio"][name] for what in MEASURED for name in shown))
+        for arm, ratios in summary(rows).items()
+    ]
+    headings = [f"{what}, {name}" for what in ("cells", "length", "time") for name in shown]
+    return [
+        Table(
+            "terms",
+            f"The terms of Eq. 2 on {len(rows)} maps, over the traditional A*",
+            (("", ""), *((heading, ".3f") for heading in headings)),
+            lines,
+            "Cells expanded, length of the grid path and time of the search, on one kernel.",
+        )
+    ]
+
+
+def _numbers(kind: str, some: int, seed: int, size: int) -> Iterator[int]:
+    """The first maps of a kind that have a way."""
+    return islice((n for n in count() if draw(kind, n, seed, size) is not None), some)
+
+
+def _row(job: tuple[str, int], seed: int, size: int) -> Row:
+    drawn = draw(*job, seed, size)
+    assert drawn is not None
+    return measure(drawn)

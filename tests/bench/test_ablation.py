@@ -1,0 +1,169 @@
+"""The ablation's arms, and what their rows add up to."""
+
+import numpy as np
+import pytest
+
+from dynastar.bench import ablation, paper, terms
+from dynastar.bench.ablation import ARMS
+from dynastar.bench.families import Map, draw
+from dynastar.bench.runner import Mission, Options
+from dynastar.bench.tables import as_text
+from dynastar.navigator import PRESETS, configured
+from dynastar.planning import HeuristicConfig, SearchGrid
+
+DEFAULT = PRESETS["default"]
+
+
+def settings(arm):
+    return configured(ARMS[arm].preset, ARMS[arm].navigator)
+
+
+def changed(config, base=DEFAULT, where=""):
+    """The fields in which a config differs from another, by dotted name."""
+    found = set()
+    for name, value, other in zip(config._fields, config, base, strict=True):
+        if hasattr(value, "_fields"):
+            found |= changed(value, other, f"{where}{name}.")
+        elif value != other:
+            found.add(where + name)
+    return found
+
+
+def test_each_arm_differs_from_the_default_as_it_says():
+    heuristic = "planner.heuristic."
+    expected = {
+        "default": set(),
+        "Eq. 2: all terms": {heuristic + "parent", heuristic + "q"},
+        "Eq. 9: alpha = 0": {"dwa.weights.heading"},
+        "Eq. 9: beta = 0": {"dwa.weights.dist"},
+        "Eq. 9: gamma = 0": {"dwa.weights.vel"},
+        "Eq. 9: sigma = 0": {"dwa.weights.simi"},
+        "Eq. 9: weights as printed": {"dwa.weights.heading", "dwa.weights.simi"},
+        "normalised over ranges": {"dwa.normalisation"},
+        "normalised over sums": {"dwa.normalisation"},
+        "dist at the end": {"dwa.dist"},
+        "target by distance alone": {"target"},
+        "no turning in place": {"dwa.turn_in_place"},
+        "horizon 1.5 s": {"dwa.horizon"},
+        "horizon 6 s": {"dwa.horizon"},
+        "period 0.05 s": {"period"},
+        "period 0.2 s": {"period"},
+        "no replanning": {"global_path"},
+        "path following alone": set(),
+    }
+    assert {arm: changed(settings(arm)) for arm in expected} == expected
+    assert settings("paper") == PRESETS["paper"]
+    assert "global_path" in changed(settings("DWA alone"))
+    assert [arm for arm in ARMS if ARMS[arm].follows] == ["path following alone"]
+    terms_of = settings("Eq. 2: all terms").planner
+    for arm in (arm for arm in ARMS if arm.startswith("Eq. 2: ")):
+        assert settings(arm)._replace(planner=terms_of) == settings("Eq. 2: all terms")
+    assert len({settings(arm) for arm in ARMS}) == len(ARMS) - 1  # the follower's are the default
+
+
+def test_of_eq_2_one_term_at_a_time_is_left_out():
+    all_terms = HeuristicConfig()
+    assert settings("Eq. 2: all terms").planner.heuristic == all_terms
+    for arm in ("k = 0", "beta as interior angle", "Q as a line", "P / Q around n", "no h(p)"):
+        config = settings(f"Eq. 2: {arm}").planner
+        assert config.planner == "improved"
+        assert len(changed(config.heuristic, all_terms)) == 1
+    drawn = draw("rooms", 0)
+    grid = SearchGrid(drawn.occupied)
+    none = settings("Eq. 2: none of them (octile A*)").planner
+    octile = grid.search(drawn.start, drawn.goal, none.planner, none.heuristic)
+    exact = grid.search(drawn.start, drawn.goal, "dijkstra")
+    assert octile.cost == pytest.approx(exact.cost)
+    assert octile.expanded < exact.expanded
+
+
+def row(number, arm, outcome="arrived", length=30.0, time=60.0, **more):
+    return {
+        "number": number,
+        "arm": arm,
+        "outcome": outcome,
+        "length": length,
+        "time": time,
+        **more,
+    }
+
+
+ROWS = [
+    row(0, "default"),
+    row(0, "no replanning", length=33.0, time=90.0),
+    row(2, "default", length=40.0, time=100.0),
+    row(2, "no replanning", "blocked", 5.0, 50.0),
+    row(4, "default", "contact", contacts_moving=1),
+    row(4, "no replanning", length=50.0, time=90.0),
+    row(5, "default", "timeout"),
+    {"number": 5, "arm": "no replanning", "outcome": "error", "reason": "E: x"},
+]
+
+
+def test_ratios_are_over_the_worlds_that_both_arrived_in():
+    found = ablation.summary(ROWS)
+    assert list(found) == ["default", "no replanning"]
+    default, once = found.values()
+    assert (default["missions"], default["arrived"], default["contacts_moving"]) == (4, 2, 1)
+    assert (default["timeouts"], default["length_ratio"], default["common"]) == (1, 1.0, 2)
+    assert (once["arrived"], once["blocked"], once["errors"], once["common"]) == (2, 1, 1, 1)
+    assert (once["mean_length"], once["mean_time"]) == (41.5, 90.0)
+    assert (once["length_ratio"], once["time_ratio"]) == (pytest.approx(1.1), 1.5)
+    nothing = ablation.summary([row(0, "paper", "error")])["paper"]
+    assert nothing["mean_length"] is nothing["length_ratio"] is None
+
+
+def test_the_table_has_a_line_for_each_arm():
+    (table,) = ablation.tables(ROWS)
+    assert [cells[0] for cells in table.cells[1:]] == ["default", "no replanning"]
+    assert table.cells[2][-2:] == ["1.100", "1.500"]
+    assert "4 worlds" in as_text(table)
+
+
+def test_rows_come_world_by_world_and_an_error_is_one(tmp_path, monkeypatch):
+    def drive(scenario, navigator):
+        assert scenario.seed == 7
+        raise RuntimeError("no")
+
+    monkeypatch.setattr(ablation, "drive", drive)
+    rows = ablation.run(2, 7, tmp_path / "out")
+    assert [row["arm"] for row in rows] == list(ARMS) * 2
+    assert len({row["number"] for row in rows[: len(ARMS)]}) == 1
+    assert {row["outcome"] for row in rows} == {"error"}
+    monkeypatch.setattr(ablation, "drive", None)
+    assert ablation.run(2, 7, tmp_path / "out") == rows
+
+
+def test_arms_drive_as_they_say():
+    scenario = paper.world(0, 5)
+    default = ablation.fly(scenario, "default")
+    suites = paper.fly(Mission(5), Options(), 0)
+    assert default["length"] == suites["length"]
+    follower = ablation.fly(scenario, "path following alone")
+    assert (follower["outcome"], follower["contacts_moving"]) == ("contact", 1)
+
+
+def test_on_an_empty_map_all_terms_go_straight():
+    found = terms.measure(Map("random", 0, np.zeros((9, 9), bool), (0, 0), (8, 8)))
+    assert set(found) == {"kind", "number", *terms.ARMS}
+    for arm in terms.ARMS:
+        assert found[arm]["seconds"] > 0.0
+        assert found[arm]["expanded"] >= 9
+        if arm != "Eq. 2: beta as interior angle":  # which punishes the straight line
+            assert found[arm]["length"] == pytest.approx(8 * np.sqrt(2))
+
+
+def test_the_terms_are_measured_on_maps_of_each_kind(tmp_path):
+    rows = terms.run(6, 0, tmp_path / "out", size=24)
+    assert [row["kind"] for row in rows] == [kind for kind in terms.KINDS for _ in range(2)]
+    found = terms.summary(rows)
+    assert found["Euclidean A*"]["expanded_ratio"]["worst"] == 1.0
+    assert found["octile A*"]["length_ratio"]["mean"] == pytest.approx(1.0)
+    assert found["octile A*"]["expanded_ratio"]["worst"] <= 1.0
+    assert found["weighted A*, w = 2"]["expanded_ratio"]["mean"] < 1.0
+    assert found["weighted A*, w = 2"]["length_ratio"]["worst"] <= 2.0
+    (table,) = terms.tables(rows)
+    assert len(table.cells) == 1 + len(terms.ARMS)
+    before = (tmp_path / "out" / "terms.jsonl").read_text()
+    assert terms.run(6, 0, tmp_path / "out", size=24) == rows
+    assert (tmp_path / "out" / "terms.jsonl").read_text() == before

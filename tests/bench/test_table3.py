@@ -1,0 +1,132 @@
+"""Table III: the improved A*'s way on the known map, and what the rows add up to."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dynastar.bench import paper, table3
+from dynastar.bench.tables import as_markdown, as_text
+from dynastar.grid import OccupancyGrid
+from dynastar.planning import plan
+
+FIVE = ("median", "lower quartile", "upper", "p95", "worst")
+
+
+def row(number, length, turns, grid_length=30.0, grid_turns=8, **more):
+    end = {"outcome": "arrived", "reason": "", "contacts_moving": 0, "contacts_resting": 0}
+    driven = {"length": length, "turning_points": turns, "time": 2.0 * length}
+    way = {"grid_length": grid_length, "grid_turning_points": grid_turns}
+    free = {"grid_free": False, "grid_free_disc": False}
+    return {"number": number, **end, **driven, **way, **free, **more}
+
+
+ROWS = [
+    row(0, 27.0, 4),
+    row(2, 33.0, 2, grid_turns=0, grid_free=True),
+    row(3, 10.0, 1, outcome="contact", contacts_moving=1, grid_free=True, grid_free_disc=True),
+    row(5, 12.0, 1, outcome="timeout"),
+    {"number": 6, "outcome": "error", "reason": "E: x", "grid_length": 30.0}
+    | {"grid_turning_points": 9, "grid_free": False, "grid_free_disc": False},
+]
+
+
+def empty(*blocks, size=20):
+    grid = OccupancyGrid.from_occupied(np.zeros((size, size), bool), 1.0, 1.0, 1.0)
+    squares = tuple(paper._square(1.0 + column, 1.0 + row) for row, column in blocks)
+    return replace(paper.own_world(), grid=grid, obstacles=squares, movers=())
+
+
+def test_the_diagonal_turns_nowhere_and_hits_what_stands_on_it():
+    length = 19 * math.sqrt(2)
+    way = table3.grid_way(empty())
+    assert way["grid_length"] == pytest.approx(length)
+    assert (way["grid_turning_points"], way["grid_free"], way["grid_free_disc"]) == (0, True, True)
+    hit = table3.grid_way(empty((7, 7)))
+    assert (hit["grid_length"], hit["grid_free"]) == (way["grid_length"], False)
+    brushed = table3.grid_way(empty((7, 8)))  # a corner that a point may touch, and a disc may not
+    assert (brushed["grid_free"], brushed["grid_free_disc"]) == (True, False)
+    assert table3.grid_way(empty((3, 15)))["grid_free_disc"]
+
+
+def test_every_bend_of_a_way_over_cells_counts():
+    for number in range(12):
+        made = paper.world(3, number)
+        if isinstance(made, str):
+            continue
+        line = plan(made.grid, paper.START, paper.GOAL, "improved").grid_path.points
+        steps = np.sign(np.diff(line, axis=0).round(6))
+        bends = int((steps[1:] != steps[:-1]).any(axis=1).sum())
+        assert table3.grid_way(made)["grid_turning_points"] == bends > 0
+
+
+def test_ratios_are_over_what_arrived():
+    found = table3.summary(ROWS)
+    assert (found["missions"], found["arrived"]) == (5, 2)
+    assert (found["contacts_moving"], found["contacts_resting"]) == (1, 0)
+    assert (found["timeouts"], found["blocked"], found["errors"]) == (1, 0, 1)
+    assert found["length_ratio"] == pytest.approx(
+        {"median": 1.0, "mean": 1.0, "p95": 1.09, "worst": 1.1}
+    )
+    assert found["turning_ratio"]["worst"] == 2.0  # over one, where the way has none
+    assert found["turning_ratio"]["mean"] == pytest.approx(1.25)
+    assert found["length_ratio_of_means"] == 1.0
+    assert found["turning_ratio_of_means"] == 6 / 8
+    assert (found["mean_length"], found["mean_time"]) == (30.0, 60.0)
+    assert (found["grid_hits"], found["grid_hits_disc"]) == (3, 4)
+
+
+def test_nothing_arrived_is_no_figure_and_no_error():
+    found = table3.summary(ROWS[2:])
+    assert found["length_ratio"] is found["mean_time"] is found["turning_ratio_of_means"] is None
+    for table in table3.tables(ROWS[2:], ROWS[-1]):
+        assert table.title in as_text(table)
+
+
+def test_the_tables_have_the_printed_figures_beside():
+    own, many = table3.tables(ROWS, row(None, 28.0, 6, 32.0, 12))
+    assert own.cells[1:] == [
+        ["improved A*, grid path", "32.0", "12", "33", "7"],
+        ["hybrid", "28.0", "6", "29", "4"],
+        ["hybrid / improved A*", "0.88", "0.50", "0.88", "0.57"],
+    ]
+    assert tuple(many.cells[0][1:-1]) == FIVE
+    assert many.cells[2] == [
+        "hybrid, length m",
+        "30.00",
+        "28.50",
+        "31.50",
+        "32.70",
+        "33.00",
+        "29.00",
+    ]
+    assert many.cells[6][0] == "turns, hybrid / improved A*"
+    assert "2 of 5 arrived, 1 touched" in many.notes
+    assert "3 worlds as a point" in many.notes
+    assert "| hybrid | 28.0 | 6 | 29 | 4 |" in as_markdown(own)
+
+
+def test_rows_are_made_once_and_an_error_is_one(tmp_path, monkeypatch):
+    flown = []
+
+    def drive(scenario):
+        flown.append((scenario.name, scenario.preset, scenario.seed))
+        raise RuntimeError("no")
+
+    monkeypatch.setattr(table3, "drive", drive)
+    rows = table3.run(3, 0, tmp_path / "out")
+    assert [row["number"] for row in rows] == [0, 2, 4]  # 1 and 3 are left out by the rule
+    assert [row["outcome"] for row in rows] == ["error"] * 3
+    assert all(row["grid_length"] > 26.0 for row in rows)
+    assert table3.run(4, 0, tmp_path / "out")[:3] == rows
+    assert [name for name, *_ in flown] == ["paper 0", "paper 2", "paper 4", "paper 5"]
+    table3.run(1, 0, tmp_path / "out", preset="paper")
+    assert flown[-1] == ("paper 0", "paper", 0)
+
+
+def test_the_hybrid_is_driven_as_the_suite_drives_it():
+    own = table3.own_row()
+    assert (own["number"], own["outcome"]) == (None, "arrived")
+    assert 27.0 < own["length"] < 40.0
+    assert own["grid_length"] == pytest.approx(32.142, abs=1e-3)
