@@ -3,7 +3,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from dynastar.path import Path, Trajectory, turning_points
+from dynastar.path import Path, Trajectory, bends, turning_points
 
 coordinate = st.floats(-50, 50).map(lambda x: round(x, 3))
 polylines = st.lists(st.tuples(coordinate, coordinate), min_size=1, max_size=12)
@@ -121,3 +121,17 @@ def test_paced_points_are_equally_far_apart_along_the_path_up_to_its_end(start, 
         assert point == pytest.approx(path.at(min(start + k * spacing, stop)), abs=1e-9)
     assert points[-1] == pytest.approx(path.at(stop), abs=1e-6)
     assert len(points) <= max(2.0, span / spacing + 2.0)
+
+
+@given(polylines)
+def test_bends_are_corners_of_the_line_and_as_many_as_its_turning_points(points):
+    corners = bends(points)
+    assert len(corners) == turning_points(points)
+    line = np.asarray(points, dtype=float)
+    for corner in corners:
+        assert np.hypot(*(line - corner).T).min() < 1e-3
+
+
+def test_a_staircase_bends_where_it_turns():
+    line = [(0.0, 0.0), (2.0, 0.0), (2.0, 3.0), (2.0, 5.0), (5.0, 5.0)]
+    assert bends(line) == pytest.approx(np.array([(2.0, 0.0), (2.0, 5.0)]))

@@ -14,16 +14,23 @@ TURN_ANGLE = np.radians(10.0)  # bends up to this are none
 
 def turning_points(points: npt.ArrayLike) -> int:
     """Bends over 10 degrees of an (n, 2) polyline simplified by Douglas-Peucker at 0.25 m."""
+    return len(bends(points))
+
+
+def bends(points: npt.ArrayLike) -> Floats:
+    """Where (k, 2) the ``turning_points`` of an (n, 2) polyline are."""
     line = np.asarray(points, dtype=np.float64).reshape(-1, 2)
     if len(line) < 3:
-        return 0
+        return np.empty((0, 2))
     origin = line[0]
     kept = cv2.approxPolyDP((line - origin).astype(np.float32), TURN_TOLERANCE, False)
-    steps = np.diff(kept.reshape(-1, 2).astype(np.float64), axis=0)
-    steps = steps[np.hypot(steps[:, 0], steps[:, 1]) > 1e-6]
+    corners = kept.reshape(-1, 2).astype(np.float64)
+    steps = np.diff(corners, axis=0)
+    moved = np.hypot(steps[:, 0], steps[:, 1]) > 1e-6
+    steps, begins = steps[moved], corners[:-1][moved]
     headings = np.arctan2(steps[:, 1], steps[:, 0])
-    bends = np.abs((np.diff(headings) + np.pi) % (2 * np.pi) - np.pi)
-    return int((bends > TURN_ANGLE).sum())
+    turned = np.abs((np.diff(headings) + np.pi) % (2 * np.pi) - np.pi)
+    return np.asarray(begins[1:][turned > TURN_ANGLE] + origin, dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False)

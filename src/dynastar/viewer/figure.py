@@ -15,17 +15,15 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from dynastar.episode import Episode
-from dynastar.errors import InputError
 from dynastar.grid import OccupancyGrid
-from dynastar.io.files import written_aside
 from dynastar.metrics import Metrics, measure
 from dynastar.viewer import layers, palette, scene
+from dynastar.viewer.sheet import save
 from dynastar.viewer.view import View, known_view, mission_view
 
 if TYPE_CHECKING:
     from dynastar.planning import Plan
 
-FORMATS = (".png", ".svg", ".pdf")
 LEFT, RIGHT, AXIS, LINE = 0.62, 0.95, 0.42, 0.15  # inches beside and below the map, of a line
 LEGEND_ROW, LEGEND_COLUMN, LETTERS = 0.19, 2.1, 15.5  # inches, inches, letters an inch
 TALLEST = 0.95  # of the width, before a tall map makes the picture narrower
@@ -73,7 +71,7 @@ def draw_plan(
     detail = f"{plan.path.length:.2f} m · {turns} · {plan.expanded} cells expanded"
     words = (f"Path planned by {plan.planner}", f"{detail} · {plan.time_ms:.1f} ms")
     _lay_out(figure, axes, view, width, words, entries)
-    _save(figure, path, dpi)
+    save(figure, path, dpi)
 
 
 def draw_episode(episode: Episode, path: str | Path, width: float = 9.0, dpi: int = 160) -> None:
@@ -101,7 +99,7 @@ def draw_episode(episode: Episode, path: str | Path, width: float = 9.0, dpi: in
     entries += layers.show_contact(axes, episode)
     words = (f"{scene.name_of(episode)}: {scene.outcome_words(metrics)}", _detail(metrics))
     _lay_out(figure, axes, view, width, words, entries, driven)
-    _save(figure, path, dpi)
+    save(figure, path, dpi)
 
 
 def _detail(metrics: Metrics) -> str:
@@ -180,13 +178,3 @@ def _speed_bar(
     bar.set_label("speed, m/s", fontsize=8, color=palette.INK)
     bar.ax.tick_params(labelsize=8, colors=palette.INK, width=0.6, length=3)
     bar.outline.set_visible(False)
-
-
-def _save(figure: Figure, path: str | Path, dpi: int) -> None:
-    path = Path(path)
-    suffix = path.suffix.lower()
-    if suffix not in FORMATS:
-        raise InputError(f"{path}: a picture's name has to end in {', '.join(FORMATS)}")
-    dates = {".png": {}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
-    with written_aside(path) as aside:
-        figure.savefig(aside, format=suffix[1:], dpi=dpi, metadata=dates[suffix])

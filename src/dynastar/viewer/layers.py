@@ -81,7 +81,9 @@ def show_obstacles(axes: Axes, obstacles: Sequence[Floats]) -> list[Artist]:
     return [Patch(label="unmapped obstacle", **style)]
 
 
-def show_plans(axes: Axes, plans: Sequence[PlanRecord], view: View) -> list[Artist]:
+def show_plans(
+    axes: Axes, plans: Sequence[PlanRecord], view: View, numbered: bool = True
+) -> list[Artist]:
     """The global paths: the first dotted, later ones dashed where they differ, all numbered."""
     if not plans:
         return []
@@ -97,7 +99,8 @@ def show_plans(axes: Axes, plans: Sequence[PlanRecord], view: View) -> list[Arti
     if len(plans) > 1:
         later["color"] = palette.LATER_PATHS[0]
         entries.append(Line2D([], [], label="replanned, where it differs", **later))
-        for place, way, number in scene.plan_labels(plans, 0.02 * view.diagonal):
+        labels = scene.plan_labels(plans, 0.02 * view.diagonal) if numbered else []
+        for place, way, number in labels:
             _number(axes, place, way, number)
     return entries
 
@@ -208,16 +211,26 @@ def show_contact(axes: Axes, episode: Episode) -> list[Artist]:
     return [cross]
 
 
-def mark(axes: Axes, place: Floats, away: Floats, letters: str) -> None:
-    """Letters in a dark disc, tied to a place by a line that leads the way ``away`` from it."""
+def mark(
+    axes: Axes,
+    place: Floats,
+    away: Floats,
+    letters: str,
+    size: float = 8.0,
+    reach: float = 17.0,
+) -> None:
+    """Letters in a dark disc, tied to a place by a line that leads the way ``away`` from it.
+
+    ``size`` of the letters and ``reach`` of the line are in points.
+    """
     axes.annotate(
         letters,
         tuple(place),
-        xytext=(17.0 * away[0], 17.0 * away[1]),
+        xytext=(reach * away[0], reach * away[1]),
         textcoords="offset points",
         ha="center",
         va="center",
-        fontsize=8,
+        fontsize=size,
         fontweight="bold",
         color="white",
         bbox={"boxstyle": "circle,pad=0.22", "facecolor": palette.INK, "edgecolor": "white"},

@@ -14,6 +14,7 @@ KEEPOUT = "#f6dcc6"
 SLOW = "#faf3cf"
 
 EXPLORED = "#dbe9f7"
+EXPLORED_EDGE = "#8fb6dc"
 FIRST_PATH = "#0a3d8f"
 LATER_PATHS = ("#1f78c8", "#5ab4e5")
 
