@@ -19,3 +19,10 @@ def test_the_own_world_is_furnished_by_the_suites_rule():
     made = own_world()
     assert (made.grid.frame.x, made.grid.frame.y, made.grid.resolution) == (1.0, 1.0, 1.0)
     assert (len(made.obstacles), len(made.movers), made.start[:2]) == (2, 1, (1.5, 1.5))
+
+
+def test_the_own_worlds_unknown_blocks_stand_on_the_improved_path():
+    way = SearchGrid(own_twenty()).search((0, 0), (19, 19), "improved").cells
+    for ring in own_world().obstacles:
+        x, y = ring.mean(axis=0)
+        assert [int(y - 1.0), int(x - 1.0)] in way.tolist()

@@ -12,6 +12,7 @@ import numpy as np
 import dynastar
 from dynastar.bench.families import KINDS, Map, draw
 from dynastar.bench.rows import collect
+from dynastar.bench.tables import spread_of
 from dynastar.planning import HeuristicConfig, SearchGrid, SearchResult, smooth, straighten
 
 ROUNDS = 5  # each arm's best time of so many, in turns
@@ -77,16 +78,6 @@ def summary(rows: Sequence[Row]) -> dict[str, dict[str, dict[str, float]]]:
                 name: spread_of([ratio(row) for row in chosen]) for name, ratio in RATIOS.items()
             }
     return found
-
-
-def spread_of(values: Sequence[float]) -> dict[str, float]:
-    """Median, mean, 95th percentile and the largest."""
-    return {
-        "median": float(np.median(values)),
-        "mean": float(np.mean(values)),
-        "p95": float(np.quantile(values, 0.95)),
-        "worst": float(np.max(values)),
-    }
 
 
 def _numbers(kind: str, count: int, seed: int, size: int) -> list[tuple[str, int]]:

@@ -11,8 +11,7 @@ import numpy as np
 from dynastar.bench import paper
 from dynastar.bench.rows import collect, version
 from dynastar.bench.runner import Options, choose_missions, row_of
-from dynastar.bench.table1 import spread_of
-from dynastar.bench.tables import Cell, Table
+from dynastar.bench.tables import Cell, Table, spread_of
 from dynastar.grid import OccupancyGrid
 from dynastar.metrics import measure
 from dynastar.planning import GridPlanner, plan

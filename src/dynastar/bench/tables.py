@@ -1,10 +1,22 @@
-"""A table of an experiment: for the terminal, for a page, for the docs."""
+"""The figures of an experiment, and its tables: for the terminal, for a page, for the docs."""
 
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
 Cell = str | int | float | None
+
+
+def spread_of(values: Sequence[float]) -> dict[str, float]:
+    """Median, mean, 95th percentile and the largest."""
+    return {
+        "median": float(np.median(values)),
+        "mean": float(np.mean(values)),
+        "p95": float(np.quantile(values, 0.95)),
+        "worst": float(np.max(values)),
+    }
 
 
 class Table(NamedTuple):

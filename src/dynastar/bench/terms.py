@@ -12,8 +12,7 @@ import numpy as np
 from dynastar.bench.arms import PLAIN, TERMS
 from dynastar.bench.families import KINDS, Map, draw
 from dynastar.bench.rows import collect, version
-from dynastar.bench.table1 import spread_of
-from dynastar.bench.tables import Cell, Table
+from dynastar.bench.tables import Cell, Table, spread_of
 from dynastar.planning import HeuristicConfig, SearchGrid
 
 ROUNDS = 3  # each arm's best time of so many, in turns
