@@ -1,0 +1,149 @@
+"""Table I as it is read: on the own map, over many by arm, and by kind of map."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from dynastar.bench.families import KINDS
+from dynastar.bench.table1 import LARGE, SIZE, Row, summary
+from dynastar.bench.tables import Cell, Table
+
+# As printed: cells, length, milliseconds.
+PRINTED = {"traditional": (765, 71, 131), "improved": (382, 69, 40)}
+PRINTED_RATIOS = {"expanded_ratio": 0.499, "search_time_ratio": 0.305, "length_ratio": 0.972}
+
+# Each row's words, its search, and the smoothing after it.
+ARMS: dict[str, tuple[str, str | None]] = {
+    "traditional A* (Euclidean)": ("traditional", None),
+    "traditional A* (octile)": ("traditional, octile", None),
+    "weighted A*, w = 2": ("weighted, w = 2", None),
+    "traditional, fast smoothing": ("traditional", "traditional, smoothed"),
+    "improved A*, grid path": ("improved", None),
+    "improved, fast smoothing": ("improved", "improved, fast"),
+    "improved, any angle": ("improved", "improved, any angle"),
+}
+BOUNDS = {
+    "optimum over cells' centres": "optimum",
+    "optimum over any points": "optimum, any point",
+}
+FIVE = ("lower quartile", "median", "upper quartile", "p95", "worst")
+WORDS = {
+    "expanded_ratio": "cells expanded, Euclidean",
+    "expanded_ratio_octile": "cells expanded, octile",
+    "search_time_ratio": "time of the search",
+    "total_time_ratio": "time, search and fast smoothing",
+    "length_ratio": "length, any angle",
+    "length_ratio_fast": "length, fast smoothing",
+    "length_ratio_same_smoothing": "length, both smoothed fast",
+    "any_angle_ratio": "any angle / optimum over centres",
+    "fast_ratio": "fast / optimum over centres",
+    "fast_ratio_any_point": "fast / optimum over any points",
+}
+
+
+def tables(rows: Sequence[Row], own: Row, large: Sequence[Row] = ()) -> list[Table]:
+    """The own map's table in the paper's form, the spread by arm, by kind, and on large maps."""
+    found = [
+        _own(own),
+        _by_arm("cells", "cells expanded", rows, _cells),
+        _by_arm("length", "length", rows, _length),
+        _by_arm("time", "time, search and smoothing", rows, _seconds),
+        _by_kind("table1-kinds", rows, SIZE),
+    ]
+    return [*found, _by_kind(f"table1-{LARGE}", large, LARGE)] if large else found
+
+
+def _own(row: Row) -> Table:
+    lines: list[tuple[Cell, ...]] = []
+    for words, arm in ARMS.items():
+        printed = PRINTED.get(arm[0], (None,) * 3) if arm[1] is None else (None,) * 3
+        mine = (_cells(row, *arm), _length(row, *arm), 1e3 * _seconds(row, *arm))
+        lines.append((words, *mine, *(printed if "octile" not in words else (None,) * 3)))
+    lines += [(words, None, row[bound]["length"], *(None,) * 4) for words, bound in BOUNDS.items()]
+    return Table(
+        "table1-own",
+        f"Table I on the own {SIZE} x {SIZE} map",
+        (
+            ("", ""),
+            ("cells", ".0f"),
+            ("length", ".2f"),
+            ("time ms", ".3f"),
+            *((f"paper's {what}", "d") for what in ("cells", "length", "ms")),
+        ),
+        lines,
+        "Cells expanded, length in cells, time of search and smoothing; the paper's are of its own map.",
+    )
+
+
+def _by_arm(
+    name: str, words: str, rows: Sequence[Row], figure: Callable[[Row, str, str | None], float]
+) -> Table:
+    """Each arm's figure over the traditional A*'s of the same map."""
+    shown = [(arm, of) for arm, of in ARMS.items() if not (name == "cells" and of[1])]
+    lines: list[tuple[Cell, ...]] = [
+        (
+            arm,
+            *_five([figure(row, *of) / figure(row, "traditional", None) for row in rows]),
+        )
+        for arm, of in shown[1:]
+    ]
+    if name == "length":
+        lines += [
+            (bound, *_five([row[of]["length"] / row["traditional"]["length"] for row in rows]))
+            for bound, of in BOUNDS.items()
+        ]
+    return Table(
+        f"table1-{name}",
+        f"Table I over {len(rows)} maps: {words}, over the traditional A* (Euclidean)",
+        (("", ""), *((what, ".3f") for what in FIVE)),
+        lines,
+    )
+
+
+def _by_kind(name: str, rows: Sequence[Row], size: int) -> Table:
+    """Medians of the ratios for each kind of map, and what there is beside them."""
+    found = summary(rows)
+    kinds = [kind for kind in ("all", *KINDS) if kind in found]
+    lines: list[tuple[Cell, ...]] = [
+        (
+            words,
+            *(found[kind][ratio]["median"] for kind in kinds),
+            *(found["all"][ratio][what] for what in ("mean", "p95", "worst")),
+            PRINTED_RATIOS.get(ratio),
+        )
+        for ratio, words in WORDS.items()
+        if ratio in found["all"]
+    ]
+    return Table(
+        name,
+        f"Improved over traditional A*, {len(rows)} maps of {size} x {size} cells: medians by kind",
+        (
+            ("", ""),
+            *((kind, ".3f") for kind in kinds),
+            *((f"all: {what}", ".3f") for what in ("mean", "p95", "worst")),
+            ("paper", ".3f"),
+        ),
+        lines,
+        "The paper's length is of its improved grid path. Below 1, a smoothed path passes nearer to "
+        "corners than cells' centres are."
+        if "fast_ratio" in found["all"]
+        else "",
+    )
+
+
+def _cells(row: Row, search: str, smoothing: str | None) -> float:
+    del smoothing
+    return float(row[search]["expanded"])
+
+
+def _length(row: Row, search: str, smoothing: str | None) -> float:
+    return float(row[smoothing or search]["length"])
+
+
+def _seconds(row: Row, search: str, smoothing: str | None) -> float:
+    more = row[smoothing]["seconds"] if smoothing else 0.0
+    return float(row[search]["seconds"] + more)
+
+
+def _five(values: Sequence[float]) -> list[float]:
+    return [float(q) for q in np.quantile(values, (0.25, 0.5, 0.75, 0.95, 1.0))]
