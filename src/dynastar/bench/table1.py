@@ -86,7 +86,7 @@ def own_row() -> Row:
 def summary(rows: Sequence[Row]) -> dict[str, dict[str, dict[str, float]]]:
     """For ``all`` and for each kind of map, each ratio's median, mean, 95th percentile and worst.
 
-    Ratios to an optimum are left out where it was not worked out.
+    Ratios of what was not worked out are left out.
     """
     found = {}
     for kind in ("all", *KINDS):
@@ -102,17 +102,18 @@ def ratios(rows: Sequence[Row]) -> dict[str, list[float]]:
     for name, ratio in RATIOS.items():
         try:
             found[name] = [ratio(row) for row in rows]
-        except KeyError:  # no optimum
+        except KeyError:  # left out
             continue
     return found
 
 
-def measure(drawn: Map, bounds: bool = True) -> Row:
+def measure(drawn: Map, slow: bool = True) -> Row:
     """One map's row: by arm the cells expanded, the length in cells, and the seconds it took.
 
     The smoothed arms' seconds are those of the smoothing alone; any angle begins from the fast one,
-    whose time is in its own. With ``bounds`` there is the ``optimum``, the shortest path over all
-    straight lines between cells' centres that stay free, and that over any points whatever.
+    whose time is in its own. ``optimum`` is the shortest path over all straight lines between cells'
+    centres that stay free, and there is that over any points whatever. What looks at pairs of cells,
+    any angle and the optima, is left out if not ``slow``: their time grows with the map's square.
     """
     grid = SearchGrid(drawn.occupied)
     row: Row = {"kind": drawn.kind, "number": drawn.number}
@@ -129,13 +130,14 @@ def measure(drawn: Map, bounds: bool = True) -> Row:
     smoothings: dict[str, Callable[[], Any]] = {
         "traditional, smoothed": partial(fast, ways["traditional"]),
         "improved, fast": partial(fast, ways["improved"]),
-        "improved, any angle": lambda: straighten(
-            drawn.occupied, ways["improved"], 0.0, fast(ways["improved"])
-        ),
     }
+    if slow:
+        smoothings["improved, any angle"] = lambda: straighten(
+            drawn.occupied, ways["improved"], 0.0, fast(ways["improved"])
+        )
     for name, (line, seconds) in _timed(smoothings).items():
         row[name] = {"length": _length(line), "seconds": seconds}
-    if bounds:
+    if slow:
         way = ways["improved"]
         row["optimum"] = {"length": _length(shortest_over_centres(drawn.occupied, way))}
         row["optimum, any point"] = {"length": _length(shortest_over_corners(drawn.occupied, way))}
@@ -165,4 +167,4 @@ def _numbers(kind: str, some: int, seed: int, size: int) -> list[int]:
 def _row(job: tuple[str, int], seed: int, size: int) -> Row:
     drawn = draw(*job, seed, size)
     assert drawn is not None
-    return measure(drawn, bounds=size == SIZE)
+    return measure(drawn, slow=size == SIZE)

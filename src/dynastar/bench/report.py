@@ -1,0 +1,174 @@
+"""What ``dynastar paper`` makes: each experiment's figures, tables, rows and picture, and its files."""
+
+import csv
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from matplotlib.figure import Figure
+
+from dynastar.bench import ablation, table1, table1_tables, table3, terms
+from dynastar.bench.families import KINDS
+from dynastar.bench.figures import SUFFIXES, draw_all
+from dynastar.bench.tables import Table, as_markdown
+from dynastar.io.files import written_aside
+from dynastar.viewer.sheet import save
+from dynastar.viewer.spread import Column, Spread, draw_columns, draw_spreads
+
+Rows = Sequence[Mapping[str, Any]]
+
+
+class Asked(NamedTuple):
+    """How much of it, from which seed, into which folder, by so many processes."""
+
+    maps: int
+    worlds: int
+    seed: int
+    folder: Path
+    workers: int = 1
+    progress: bool = False
+
+
+class Report(NamedTuple):
+    """One experiment's outcome.
+
+    ``found`` are its figures for JSON, ``rows`` its rows by the name of the file they go to.
+    """
+
+    name: str
+    found: dict[str, Any]
+    tables: Sequence[Table] = ()
+    rows: Mapping[str, Rows] = {}
+    picture: Figure | None = None
+
+
+def report_table1(asked: Asked) -> Report:
+    """Table I: on the own map, over many, and over a tenth as many large ones."""
+    seed, folder, workers, progress = asked[2:]
+    rows = table1.run(asked.maps, seed, folder, workers, progress=progress)
+    few = -(-asked.maps // table1.FEWER)
+    large = table1.run(few, seed, folder, workers, table1.LARGE, progress)
+    own = table1.own_row()
+    shown = {
+        "expanded_ratio": Spread("cells expanded", {}, 0.499, log=True, reference=1.0),
+        "length_ratio_fast": Spread("length, fast smoothing", {}, reference=1.0),
+        "total_time_ratio": Spread("time with smoothing", {}, 0.305, log=True, reference=1.0),
+    }
+    groups = {
+        kind: table1.ratios([row for row in rows if kind in (row["kind"], "all")])
+        for kind in ("all", *KINDS)
+    }
+    return Report(
+        "table1",
+        {
+            "table1": table1.summary(rows),
+            "table1_own": own,
+            f"table1_{table1.LARGE}": table1.summary(large),
+        },
+        table1_tables.tables(rows, own, large),
+        {"table1": rows, f"table1-{table1.LARGE}": large},
+        draw_spreads(
+            [
+                spread._replace(values={kind: values[name] for kind, values in groups.items()})
+                for name, spread in shown.items()
+            ]
+        ),
+    )
+
+
+def report_table3(asked: Asked) -> Report:
+    """Table III: in the own world, and over many."""
+    seed, folder, workers, progress = asked[2:]
+    rows = table3.run(asked.maps, seed, folder, workers, progress)
+    own = table3.own_row()
+    arrived = [row for row in rows if row["outcome"] == "arrived"]
+    alone, hybrid = table3.PRINTED["improved"], table3.PRINTED["hybrid"]
+    measures = {
+        "length ratio": (table3.length_ratio, hybrid[0] / alone[0]),
+        "turning points ratio": (table3.turning_ratio, hybrid[1] / alone[1]),
+    }
+    worlds = f"{len(arrived)} worlds"
+    return Report(
+        "table3",
+        {"table3": table3.summary(rows), "table3_own": own},
+        table3.tables(rows, own),
+        {"table3": rows},
+        draw_spreads(
+            [
+                Spread(label, {worlds: [ratio(row) for row in arrived]}, printed, reference=1.0)
+                for label, (ratio, printed) in measures.items()
+            ]
+        )
+        if arrived
+        else None,
+    )
+
+
+def report_ablation(asked: Asked) -> Report:
+    """The ablation: on worlds, and the terms of Eq. 2 on maps, too."""
+    seed, folder, workers, progress = asked[2:]
+    on_maps = terms.run(asked.maps, seed, folder, workers, progress=progress)
+    rows = ablation.run(asked.worlds, seed, folder, workers, progress)
+    found = ablation.summary(rows)
+
+    def column(label: str, of: Callable[[dict[str, Any]], float | None], format_: str) -> Column:
+        return Column(label, {arm: of(figures) for arm, figures in found.items()}, format_)
+
+    columns = [
+        column("arrived, %", lambda arm: 100.0 * arm["arrived"] / arm["missions"], ".0f"),
+        column("touched", lambda arm: arm["contacts_moving"] + arm["contacts_resting"], ".0f"),
+        column("length / default's", lambda arm: arm["length_ratio"], ".2f"),
+        column("time / default's", lambda arm: arm["time_ratio"], ".2f"),
+    ]
+    return Report(
+        "ablation",
+        {"ablation": found, "terms": terms.summary(on_maps)},
+        [*terms.tables(on_maps), *ablation.tables(rows)],
+        {"ablation": rows, "terms": on_maps},
+        draw_columns(columns, best=ablation.BASE),
+    )
+
+
+def report_figures(asked: Asked) -> Report:
+    """The figures, drawn into the folder."""
+    asked.folder.mkdir(parents=True, exist_ok=True)
+    files = draw_all(asked.folder, asked.progress)
+    return Report("figures", {"figures": [file.name for file in files]})
+
+
+REPORTS: dict[str, Callable[[Asked], Report]] = {
+    "table1": report_table1,
+    "table3": report_table3,
+    "figures": report_figures,
+    "ablation": report_ablation,
+}
+
+
+def write(report: Report, folder: Path) -> None:
+    """The report's tables (.md), rows (.csv) and picture (.png, .svg)."""
+    if report.tables:
+        with written_aside(folder / f"{report.name}.md") as aside:
+            text = "\n\n".join(as_markdown(table) for table in report.tables)
+            aside.write_text(text + "\n", encoding="utf-8")
+    for name, rows in report.rows.items():
+        write_csv(folder / f"{name}.csv", rows)
+    if report.picture is not None:
+        for suffix in SUFFIXES:
+            save(report.picture, folder / f"{report.name}{suffix}")
+
+
+def write_csv(file: Path, rows: Rows) -> None:
+    """A line for each row; what is nested in it has headings like "improved: length"."""
+    flat = [
+        {
+            name if not isinstance(value, Mapping) else f"{name}: {what}": figure
+            for name, value in row.items()
+            for what, figure in (value.items() if isinstance(value, Mapping) else [("", value)])
+        }
+        for row in rows
+    ]
+    headings = list(dict.fromkeys(name for row in flat for name in row))
+    with written_aside(file) as aside, aside.open("w", newline="", encoding="utf-8") as handle:
+        writer = csv.DictWriter(handle, headings)
+        writer.writeheader()
+        writer.writerows(flat)
