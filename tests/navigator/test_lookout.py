@@ -12,8 +12,8 @@ from dynastar.grid import OccupancyGrid
 from dynastar.navigator.chart import Chart
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.lookout import COME, NEAR, RADIUS, SLOW, Lookout, View
-from dynastar.navigator.lookout_kernels import careful, lanes, touches
-from dynastar.obstacles import ObstacleLayer
+from dynastar.navigator.lookout_kernels import careful, lanes, lanes_of, shut_discs, touches
+from dynastar.obstacles import ObstacleLayer, Tracker
 from dynastar.path import Path
 from dynastar.robot import ROBOTS
 
@@ -84,6 +84,33 @@ def test_every_lane_leads_out_of_hiding_through_open_space_onto_the_path(seed):
         )
         assert not sight.solid[rows, columns].any()
         assert sight.free_at[int(y / CELL), int(x / CELL)] < sight.since
+
+
+def test_nobody_comes_through_what_is_known_to_move():
+    walls = [(0.0, 5.0, 1.5, 8.0), (2.5, 5.0, 8.0, 8.0)]
+    street = view([(1.5, 5.5, 2.5, 8.0)], walls)
+    shut_discs(np.array([[2.0, 5.2, 0.55]]), street)
+    assert street.solid[round(5.2 / CELL), round(2.0 / CELL)]
+    assert not street.solid[round(4.4 / CELL), round(2.0 / CELL)]
+    assert len(lanes(PATH, street, RADIUS, COME, NEAR)) == 0
+    shut_discs(np.array([[-3.0, 4.0, 0.5], [8.1, 20.0, 0.5]]), street)  # off the view
+
+
+def test_who_has_just_come_into_view_may_come_onto_the_path_from_there():
+    walls = [(0.0, 5.0, 1.5, 8.0), (2.5, 5.0, 8.0, 8.0)]
+    face = (1.75, 5.6, 2.25, 5.7)  # all that is seen of whoever stands at (2, 5.85)
+    street = view([(1.5, 5.7, 2.5, 8.0)], [*walls, face])
+    assert len(lanes(PATH, street, RADIUS, COME, NEAR)) == 0
+    found = lanes_of(np.array([[2.0, 5.85]]), PATH, street, RADIUS, NEAR)
+    assert len(found)
+    assert (found[:, :2] == (2.0, 5.85)).all()
+    for x, y, ux, uy in found:
+        onto = x + ux * (4.0 - y) / uy
+        assert np.abs(PATH[:, 0] - onto).min() < 1e-9
+        assert 1.0 < onto < 3.0  # the walls leave no more
+    behind = view([], [*walls, face, (1.0, 4.3, 3.0, 4.5)])
+    assert len(lanes_of(np.array([[2.0, 5.85]]), PATH, behind, RADIUS, NEAR)) == 0
+    assert len(lanes_of(np.array([[2.0, 7.5]]), PATH, street, RADIUS, NEAR)) == 0  # too far away
 
 
 def touches_slowly(lane, v, change, top, reaction, speed, apart, seconds, path):
@@ -160,7 +187,7 @@ def speed_at_a_corner(v, config=NavigatorConfig()):
     layer.free_at[seen] = NOW
     layer.update(NOW)
     path = Path(np.array([(3.5, 1.8), (9.5, 1.8)]))
-    return Lookout(ROBOT, config).speed(NOW, v, 1.0, path, 0.0, layer, chart)
+    return Lookout(ROBOT, config).speed(NOW, v, 1.0, path, 0.0, layer, chart, Tracker())
 
 
 def test_a_robot_slows_down_where_the_map_leaves_room_to_come_out_of():

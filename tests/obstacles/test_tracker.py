@@ -242,3 +242,22 @@ def test_a_walker_beside_a_wall_of_the_map_is_found():
         look(np.minimum(ranges_to_face(4.0, 0.3, 1.8), walker), here, known, layer, tracker, k / 10)
     (mover,) = tracker.movers
     assert (mover.vx, mover.vy) == pytest.approx((-0.5, 0.0), abs=0.1)
+
+
+def test_what_comes_into_view_is_new_until_it_is_known_to_walk_or_to_stand():
+    def walker_and_post(t):
+        return [(3.0, -1.0 + 0.5 * t, 0.3), (-3.0, 0.0, 0.3)]
+
+    _, tracker, _ = watch(walker_and_post, 0.1)
+    assert len(tracker.in_sight()) == 0
+    assert tracker.newcomers()[:, 0] == pytest.approx([3.0, -3.0], abs=0.2)
+    _, tracker, _ = watch(walker_and_post, 1.0)
+    assert len(tracker.newcomers()) == 0
+    ((x, y, radius),) = tracker.in_sight()
+    assert (x, y, radius) == pytest.approx((3.0, -0.5, 0.3), abs=0.15)
+
+
+def test_who_is_out_of_sight_is_not_in_sight():
+    _, tracker, _ = watch(walking(-3.0, 0.8), 4.0)
+    assert len(tracker.movers)
+    assert len(tracker.in_sight()) == len(tracker.newcomers()) == 0

@@ -1,4 +1,4 @@
-"""Who may come out of hiding: slow enough where a lane leads out of it onto the path."""
+"""Who may come out of hiding, or has just: slow enough where a lane leads from there onto the path."""
 
 from typing import NamedTuple
 
@@ -8,7 +8,7 @@ import numpy.typing as npt
 from dynastar.navigator import lookout_kernels
 from dynastar.navigator.chart import Chart
 from dynastar.navigator.config import NavigatorConfig
-from dynastar.obstacles import ObstacleLayer
+from dynastar.obstacles import ObstacleLayer, Tracker
 from dynastar.obstacles.tracker_kernels import HALF_SEEN, UNSEEN
 from dynastar.path import Path
 from dynastar.robot import Robot
@@ -58,10 +58,13 @@ class Lookout:
         s: float,
         layer: ObstacleLayer,
         chart: Chart,
+        tracker: Tracker,
     ) -> float:
         """The speed (m/s) to go at, near the present ``v`` and up to ``top``, ``s`` metres along a path.
 
         From it the robot can stop before whoever comes straight out of hiding, or go on and be past;
+        so it can for who has just come into view and may be walking or not. Nobody comes through what
+        is known to move, which the window deals with;
         if there is no such speed near ``v`` it is the lowest, but never less than ``SLOW``.
         """
         if self.pace == 0.0:
@@ -75,7 +78,13 @@ class Lookout:
         )
         points = path.paced(s, s + AHEAD + FURTHER, SPACING)
         onto = points[: round(AHEAD / SPACING) + 1 : round(EVERY / SPACING)]
-        found = lookout_kernels.lanes(np.ascontiguousarray(onto), view, RADIUS, COME, NEAR)
+        onto = np.ascontiguousarray(onto)
+        lookout_kernels.shut_discs(tracker.in_sight(), view)
+        found = lookout_kernels.lanes(onto, view, RADIUS, COME, NEAR)
+        newcomers = tracker.newcomers()
+        if len(newcomers):
+            come = lookout_kernels.lanes_of(newcomers, onto, view, RADIUS, NEAR)
+            found = np.vstack([found, come])
         accel = self.limits.v_accel
         high, low = min(v + accel, top), max(v - 0.5 * accel, min(SLOW, top))  # within a second
         speeds = np.linspace(max(high, low), low, CANDIDATES)

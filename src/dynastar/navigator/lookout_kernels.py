@@ -67,6 +67,45 @@ def lanes(path, view, radius, length, farthest):
 
 
 @njit(cache=True)
+def shut_discs(discs, view):
+    """Marks the cells under discs (k, 3) x, y, radius as solid."""
+    rows, columns = view.solid.shape
+    for k in range(len(discs)):
+        x, y = (discs[k, 0] - view.x0) / view.resolution, (discs[k, 1] - view.y0) / view.resolution
+        reach = discs[k, 2] / view.resolution
+        for r in range(max(int(y - reach), 0), min(int(y + reach) + 1, rows)):
+            for c in range(max(int(x - reach), 0), min(int(x + reach) + 1, columns)):
+                if (r + 0.5 - y) ** 2 + (c + 0.5 - x) ** 2 <= reach * reach:
+                    view.solid[r, c] = True
+
+
+@njit(cache=True)
+def lanes_of(newcomers, path, view, radius, farthest):
+    """Straight ways (k, 4) as of ``lanes``, of somebody at one of the places (m, 2) onto the path.
+
+    A way is free from the path to the surface of whoever comes.
+    """
+    found = np.empty((len(newcomers) * len(path), 4))
+    k = 0
+    for j in range(len(newcomers)):
+        x, y = newcomers[j]
+        for i in range(len(path)):
+            dx, dy = x - path[i, 0], y - path[i, 1]
+            length = math.hypot(dx, dy)
+            if length > farthest or length < PACE:
+                continue
+            ux, uy = dx / length, dy / length
+            d, shut = PACE, False
+            while d < length - radius - 2.0 * PACE and not shut:
+                _, shut = across(view, path[i, 0] + d * ux, path[i, 1] + d * uy, ux, uy, radius)
+                d += PACE
+            if not shut:
+                found[k] = x, y, -ux, -uy
+                k += 1
+    return found[:k]
+
+
+@njit(cache=True)
 def touches(lane, path, spacing, v, change, top, reaction, speed, apart, seconds):
     """Whether who comes down a lane touches a robot that drives along a path from ``v`` (m/s).
 

@@ -256,6 +256,7 @@ class Navigator:
                     self._s,
                     self.senses.layer,
                     self.chart,
+                    self.senses.tracker,
                 ),
                 float(bend_speed(abs(bearing), self.robot.limits)),
             ),

@@ -13,6 +13,8 @@ from dynastar.obstacles import tracker_kernels as kernels
 from dynastar.obstacles.layer import ObstacleLayer, Points
 from dynastar.scan import LaserScan
 
+NEW = 6  # scans, after which what moves is known to
+
 
 class TrackerConfig(NamedTuple):
     """The tracker's settings."""
@@ -143,6 +145,20 @@ class Tracker:
         self._tracks[len(kept) :, kernels.T_CLUSTER] = -1.0
         self.movers = self._confirmed()
         return kernels.on_tracks(points, self._tracks, found, 0.1)
+
+    def in_sight(self) -> Points:
+        """Centre and radius (k, 3), metres, of the confirmed movers that the last scan showed."""
+        moving = self._tracks[:, kernels.T_MOVING] > 0
+        return self._last_seen(moving, [kernels.T_X, kernels.T_Y, kernels.T_RADIUS])
+
+    def newcomers(self) -> Points:
+        """Centre (k, 2), metres, of what came into view so lately that it may be moving, or not."""
+        new = (self._tracks[:, kernels.T_MOVING] == 0) & (self._tracks[:, kernels.T_HITS] <= NEW)
+        return self._last_seen(new, [kernels.T_X, kernels.T_Y])
+
+    def _last_seen(self, which: npt.NDArray[np.bool_], columns: list[int]) -> Points:
+        now = self._tracks[:, kernels.T_SEEN] >= self._stamp
+        return np.ascontiguousarray(self._tracks[which & now][:, columns])
 
     def _confirmed(self) -> tuple[MovingObstacle, ...]:
         rows = self._tracks[self._tracks[:, kernels.T_MOVING] > 0]
