@@ -230,3 +230,9 @@ def test_the_chart_takes_over_cell_by_cell_what_the_layer_shows(yaw, seed):
     far.states[:] = SEEN_OCCUPIED
     assert not made.take_in(far)
     assert made.blocked_under(far).all()
+
+
+def test_what_stands_in_a_wall_of_the_map_or_off_it_is_not_on_free_ground():
+    places = np.array([(4.0, 3.0), (0.05, 3.0), (-0.3, 3.0), (4.0, 6.2), (7.5, 0.5)])
+    assert chart().on_free_ground(places).tolist() == [[4.0, 3.0], [7.5, 0.5]]
+    assert chart().on_free_ground(np.empty((0, 2))).shape == (0, 2)

@@ -81,7 +81,7 @@ class Lookout:
         onto = np.ascontiguousarray(onto)
         lookout_kernels.shut_discs(tracker.in_sight(), view)
         found = lookout_kernels.lanes(onto, view, RADIUS, COME, NEAR)
-        newcomers = tracker.newcomers()
+        newcomers = chart.on_free_ground(tracker.newcomers())
         if len(newcomers):
             come = lookout_kernels.lanes_of(newcomers, onto, view, RADIUS, NEAR)
             found = np.vstack([found, come])
