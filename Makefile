@@ -8,7 +8,7 @@ FIND_PYTHON = for python in python3.11 python3 python3.12 python3.13 python; do 
 	$$python -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2>/dev/null \
 	&& echo $$python && break; done
 
-.PHONY: help setup check test demo suites bench clean
+.PHONY: help setup check test demo suites paper bench clean
 
 help:
 	@echo "make setup   make .venv and install dynastar with its tools into it"
@@ -16,6 +16,7 @@ help:
 	@echo "make test    run the tests (those on public data, too, where DYNASTAR_DATA has it)"
 	@echo "make check   ruff, mypy, import-linter"
 	@echo "make suites  the suites movingai (needs DYNASTAR_DATA) and paper; JSON in out/suites"
+	@echo "make paper   the paper's tables and figures, and those of docs/paper.md; two hours"
 	@echo "make bench   how fast it is, beside others, in an environment of its own"
 	@echo "make clean   remove .venv, out and caches"
 
@@ -45,6 +46,10 @@ suites: setup
 	@mkdir -p out/suites
 	$(BIN)/dynastar bench movingai --json-out out/suites/movingai.json
 	$(BIN)/dynastar bench paper --missions 500 --json-out out/suites/paper.json
+
+paper: setup
+	$(BIN)/dynastar paper all --docs docs/paper.md --json-out out/paper.json
+	cp out/paper/fig*.png out/paper/table*.png out/paper/ablation.png docs/media/paper
 
 $(PEERS)/.installed: benchmarks/requirements.txt $(STAMP)
 	test -x $(PEERS)/bin/python || $(BIN)/python -m venv $(PEERS)

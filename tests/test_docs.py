@@ -1,0 +1,59 @@
+"""The pages say what is so: names exist, pictures are there, tables have their places."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from dynastar.bench import ablation, table1, table1_tables, table3, terms
+from dynastar.bench.table1 import LARGE
+
+ROOT = Path(__file__).parent.parent
+SOURCES = ROOT / "src" / "dynastar"
+PAPER = (ROOT / "docs" / "paper.md").read_text(encoding="utf-8")
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_link_to_a_file_leads_to_one(page):
+    links = re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8"))
+    for link in links:
+        assert (page.parent / link).exists(), link
+
+
+def test_each_function_beside_an_equation_is_in_the_file_that_is_named():
+    part = PAPER.partition("## Equations")[2].partition("\n\n![")[0]
+    named = 0
+    for line in part.splitlines():
+        functions: list[str] = []
+        for word in re.findall(r"`([^`]+)`", line.split("|")[-2] if "|" in line else ""):
+            if not word.endswith(".py"):
+                functions.append(word)
+                continue
+            text = (SOURCES / word).read_text(encoding="utf-8")
+            for function in functions:
+                last = function.split(".")[-1]
+                assert re.search(rf"(def|class) {last}\b", text), f"{function} in {word}"
+                named += 1
+            functions = []
+    assert named > 15
+
+
+def test_every_table_of_the_experiments_has_its_place_on_the_page():
+    names = set(re.findall(r"<!-- (?!end )([\w-]+) -->", PAPER))
+    row = table1.own_row()
+    made = table1_tables.tables([{**row, "kind": "random"}], row, [row])
+    assert f"table1-{LARGE}" in {table.name for table in made}
+    assert {table.name for table in made} < names
+    assert names == {table.name for table in made} | {"table3-own", "table3", "ablation", "terms"}
+    for module, name in ((table3, "table3"), (ablation, "ablation"), (terms, "terms")):
+        assert f'"{name}"' in Path(module.__file__).read_text(encoding="utf-8")
+
+
+def test_every_line_of_the_ablation_that_the_page_names_is_one():
+    lines = set(ablation.ARMS)
+    part = PAPER.partition("## What the paper leaves open")[2].partition("## Table I")[0]
+    for row in re.findall(r"\|([^|\n]*)\|\n", part):
+        name = row.strip()
+        if name.startswith(("Eq. 2", "Eq. 9", "target", "no turning", "dist")):
+            assert name in lines, name
