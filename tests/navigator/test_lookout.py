@@ -101,7 +101,7 @@ def test_who_has_just_come_into_view_may_come_onto_the_path_from_there():
     face = (1.75, 5.6, 2.25, 5.7)  # all that is seen of whoever stands at (2, 5.85)
     street = view([(1.5, 5.7, 2.5, 8.0)], [*walls, face])
     assert len(lanes(PATH, street, RADIUS, COME, NEAR)) == 0
-    found = lanes_of(np.array([[2.0, 5.85]]), PATH, street, RADIUS, NEAR)
+    found = lanes_of(np.array([[2.0, 5.85, 0.25]]), PATH, street, RADIUS, NEAR)
     assert len(found)
     assert (found[:, :2] == (2.0, 5.85)).all()
     for x, y, ux, uy in found:
@@ -109,8 +109,10 @@ def test_who_has_just_come_into_view_may_come_onto_the_path_from_there():
         assert np.abs(PATH[:, 0] - onto).min() < 1e-9
         assert 1.0 < onto < 3.0  # the walls leave no more
     behind = view([], [*walls, face, (1.0, 4.3, 3.0, 4.5)])
-    assert len(lanes_of(np.array([[2.0, 5.85]]), PATH, behind, RADIUS, NEAR)) == 0
-    assert len(lanes_of(np.array([[2.0, 7.5]]), PATH, street, RADIUS, NEAR)) == 0  # too far away
+    assert len(lanes_of(np.array([[2.0, 5.85, 0.25]]), PATH, behind, RADIUS, NEAR)) == 0
+    assert (
+        len(lanes_of(np.array([[2.0, 7.5, 0.25]]), PATH, street, RADIUS, NEAR)) == 0
+    )  # too far away
 
 
 def touches_slowly(lane, v, change, top, reaction, speed, apart, seconds, path):

@@ -161,3 +161,41 @@ def test_a_thousand_cells_take_less_than_a_few_milliseconds():
     began = time.perf_counter()
     smooth(blocked, points, 6.0, 10.0)
     assert time.perf_counter() - began < 5e-3
+
+
+@pytest.mark.parametrize("radius", [0.0, 0.5, 8.0])
+def test_a_few_points_may_become_many_round_something_round(radius):
+    y, x = np.mgrid[:200, :200] + 0.5
+    blocked = np.hypot(y - 100.0, x - 100.0) < 60.0
+    far = 1.2 * (62.0 + radius)
+    low, high = 100.0 - far / 1.2, 100.0 + far / 1.2
+    points = np.array([(low, 100.0 - far), (low, high), (100.0 + far, high)])
+    smoothed = smooth(blocked, points, radius)
+    assert length(smoothed) < 0.95 * length(points)
+    assert len(smoothed) > 8
+    for a, b in itertools.pairwise(smoothed):
+        assert segment_clear(blocked, a, b, radius)
+
+
+def test_a_string_that_goes_there_and_back_round_a_corner_is_let_go():
+    blocked = np.zeros((10, 20), dtype=bool)
+    blocked[4, 10] = True
+    points = [(2.5, 9.5), (2.5, 11.5), (6.5, 11.5), (2.5, 11.8), (2.5, 13.5)]
+    assert length(smooth(blocked, points, 0.0)) == pytest.approx(4.0)
+
+
+@pytest.mark.slow
+def test_twice_the_bends_in_the_open_take_hardly_more_than_twice_the_time():
+    def seconds(n):
+        steps = np.arange(n)
+        line = np.column_stack([(steps + 1) // 2, steps // 2]) + 10.5
+        blocked = np.zeros((n + 20, n + 20), dtype=bool)
+        times = []
+        for _ in range(3):
+            began = time.perf_counter()
+            assert len(smooth(blocked, line, 3.0)) == 2
+            times.append(time.perf_counter() - began)
+        return min(times)
+
+    seconds(100)
+    assert seconds(3000) < 8.0 * seconds(1000)

@@ -50,9 +50,9 @@ def collect(
 
 
 def version(*modules: str) -> str:
-    """A digest of all that rows can depend on: the library, and the ``modules`` of bench named.
+    """A digest of all that rows can depend on: the library, bench's runner, and its ``modules`` named.
 
-    Of the rest of bench, of cli and of viewer nothing reaches a row.
+    Of the rest of bench, of cli and of viewer nothing has to do with a row.
     """
     package = Path(dynastar.__file__).parent
     outside = {"cli", "viewer", "bench"}
@@ -62,7 +62,7 @@ def version(*modules: str) -> str:
         if source.relative_to(package).parts[0] not in outside
     ]
     digest = hashlib.sha256()
-    for source in sorted([*sources, *(package / "bench" / f"{name}.py" for name in set(modules))]):
+    for source in sorted([*sources, *(package / "bench" / f"{name}.py" for name in {"runner", *modules})]):
         digest.update(source.read_bytes())
     return digest.hexdigest()[:16]
 
@@ -72,7 +72,7 @@ def _key(job: Any) -> str:
 
 
 def _kept(file: Path, settings: dict[str, Any]) -> dict[str, dict[str, Any]]:
-    if not file.exists():
+    if not file.exists() or file.stat().st_size == 0:
         return {}
     first, *lines = (
         read_bytes(file, MAX_TEXT_BYTES, InputError).decode(errors="replace").split("\n")

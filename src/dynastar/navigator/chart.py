@@ -71,11 +71,11 @@ class Chart:
         return blocked
 
     def on_free_ground(self, points: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        """Those of the points (n, 2), metres, where the map has nothing."""
-        cells = np.floor(self.frame.points_to_grid(points)).astype(np.int64)
+        """Those of the points (n, 2 or more), metres, where the map has nothing."""
+        cells = np.floor(self.frame.points_to_grid(points[:, :2])).astype(np.int64)
         inside = ((cells >= 0) & (cells < self.prior.shape)).all(axis=1)
         rows, columns = cells[inside].T
-        return points[inside][~self.prior[rows, columns]]
+        return points[inside][~self.grid.occupied[rows, columns]]
 
     def forget(self) -> None:
         """Drops everything seen."""

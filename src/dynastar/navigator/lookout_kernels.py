@@ -81,14 +81,14 @@ def shut_discs(discs, view):
 
 @njit(cache=True)
 def lanes_of(newcomers, path, view, radius, farthest):
-    """Straight ways (k, 4) as of ``lanes``, of somebody at one of the places (m, 2) onto the path.
+    """Straight ways (k, 4) as of ``lanes``, of the discs (m, 3) x, y, radius onto the path.
 
     A way is free from the path to the surface of whoever comes.
     """
     found = np.empty((len(newcomers) * len(path), 4))
     k = 0
     for j in range(len(newcomers)):
-        x, y = newcomers[j]
+        x, y, own = newcomers[j]
         for i in range(len(path)):
             dx, dy = x - path[i, 0], y - path[i, 1]
             length = math.hypot(dx, dy)
@@ -96,7 +96,7 @@ def lanes_of(newcomers, path, view, radius, farthest):
                 continue
             ux, uy = dx / length, dy / length
             d, shut = PACE, False
-            while d < length - radius - 2.0 * PACE and not shut:
+            while d < length - max(radius, own) - 2.0 * PACE and not shut:
                 _, shut = across(view, path[i, 0] + d * ux, path[i, 1] + d * uy, ux, uy, radius)
                 d += PACE
             if not shut:

@@ -85,6 +85,8 @@ class Navigator:
         self.senses.set_grid(grid)
         self._path = None
         self.status = replace(self.status, planning_frame=self.chart.frame)
+        if self.status.state == "blocked":
+            self.set_goal(self._goals)
 
     def set_goal(self, goal: Goal | Sequence[Goal]) -> None:
         """One goal, or several to reach in order: (x, y) metres and a heading in radians or None."""
@@ -112,7 +114,7 @@ class Navigator:
             self._say("sensor_lost", fault, choice=None)
             return self._commands.brake(state)
         if self.status.state == "sensor_lost":
-            self._say("following", "data are back")
+            self._say("following" if self._goals else "idle", "data are back")
             self.progress.restart(state.stamp)
         around = self.senses.surroundings(state.stamp, movers)
         changed = self.chart.take_in(self.senses.layer)
@@ -138,6 +140,8 @@ class Navigator:
         """Keeps a path that leads to the goal; False if there is none for now."""
         here = (state.pose.x, state.pose.y)
         if self.config.global_path == "straight":
+            if self._path is None:
+                self.progress.restart(state.stamp)
             self._follow(Path(np.array([here, self._goals[0][:2]])))
             return True
         if self._path is None:

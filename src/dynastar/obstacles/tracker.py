@@ -148,16 +148,16 @@ class Tracker:
 
     def in_sight(self) -> Points:
         """Centre and radius (k, 3), metres, of the confirmed movers that the last scan showed."""
-        moving = self._tracks[:, kernels.T_MOVING] > 0
-        return self._last_seen(moving, [kernels.T_X, kernels.T_Y, kernels.T_RADIUS])
+        return self._last_seen(self._tracks[:, kernels.T_MOVING] > 0)
 
     def newcomers(self) -> Points:
-        """Centre (k, 2), metres, of what came into view so lately that it may be moving, or not."""
+        """The same of what came into view so lately that it may be moving, or not."""
         new = (self._tracks[:, kernels.T_MOVING] == 0) & (self._tracks[:, kernels.T_HITS] <= NEW)
-        return self._last_seen(new, [kernels.T_X, kernels.T_Y])
+        return self._last_seen(new)
 
-    def _last_seen(self, which: npt.NDArray[np.bool_], columns: list[int]) -> Points:
+    def _last_seen(self, which: npt.NDArray[np.bool_]) -> Points:
         now = self._tracks[:, kernels.T_SEEN] >= self._stamp
+        columns = [kernels.T_X, kernels.T_Y, kernels.T_RADIUS]
         return np.ascontiguousarray(self._tracks[which & now][:, columns])
 
     def _confirmed(self) -> tuple[MovingObstacle, ...]:

@@ -13,6 +13,7 @@ Points = npt.NDArray[np.float64]
 
 ROUNDS = 30  # in which every corner is pulled; each may halve the corners of open space
 FINEST = 0.5  # cells between two corners, or they become one
+IN_A_ROW = 4  # corners that are pulled straight from one point in a round
 BEVELS = 2  # rounds in which every corner is cut, so at most 4 points come of one
 SMALLEST_CUT = 0.05  # cells
 STRAIGHT_ENOUGH = 0.9998  # cosine of a bend (about 1 degree) that needs no rounding
@@ -49,32 +50,58 @@ def gap(points: Points, i: int, y: float, x: float) -> float:
 
 
 @njit(cache=True)
+def leave_out(
+    blocked: Bytes, line: Points, n: int, radius: float, moved: npt.NDArray[np.bool_]
+) -> int:
+    """Drops corners of the first ``n`` points that can be passed on the other side of what holds them.
+
+    How many points are left; ``moved`` marks the neighbours of those that were dropped.
+    """
+    count = 1
+    moved[0] = False
+    for i in range(1, n):
+        y, x = line[i, 0], line[i, 1]
+        dropped = False
+        if count >= 2 and is_clear(blocked, line[count - 2, 0], line[count - 2, 1], y, x, radius):
+            count -= 1
+            moved[count - 1] = dropped = True
+        line[count, 0], line[count, 1] = y, x
+        moved[count] = dropped
+        count += 1
+    return count
+
+
+@njit(cache=True)
 def pull_taut(blocked: Bytes, points: Points, radius: float) -> Points:
     """Pulls every corner, round after round, until none gets shorter.
 
-    A round looks at a corner once, and again only where it or a neighbour has moved: what it pulls
-    straight it leaves to the next one to pull on, so long ways through open space stay cheap.
+    A round looks at a corner once, and only if it or a neighbour has moved since the last look. After
+    some that were pulled straight in a row the next is left for the next round, which so has few of
+    them left in open space, and long ways stay cheap.
     """
-    room = 2 * len(points) + 16
+    room = 3 * len(points) + 64
     line, pulled = np.empty((room, 2)), np.empty((room, 2))
     moved, fresh = np.ones(room, np.bool_), np.empty(room, np.bool_)
     kept = np.empty(room, np.bool_)
     n = bends(points, line)
     for _ in range(ROUNDS):
         pulled[0], fresh[0], kept[0] = line[0], False, moved[0]
-        count, changed = 1, False
+        count, changed, straightened = 1, False, 0
         for i in range(1, n):
             y, x = line[i, 0], line[i, 1]
             fresh_here = False
-            if count >= 2:
+            if straightened == IN_A_ROW:
+                straightened = 0
+            elif count >= 2:
                 a, b = count - 2, count - 1
                 if moved[i] or fresh[a] or fresh[b] or kept[a] or kept[b]:
                     ay, ax, by, bx = pulled[a, 0], pulled[a, 1], pulled[b, 0], pulled[b, 1]
                     how, py, px, qy, qx = pulled_bend(blocked, ay, ax, by, bx, y, x, radius)
+                    straightened = straightened + 1 if how == 0 else 0
                     if how == 0:
                         count = b
                         fresh[a] = fresh_here = changed = True
-                    elif how > 0 and count + 2 < room:
+                    elif how == 1 or (how == 2 and count + 1 + n - i <= room):
                         pulled[b, 0], pulled[b, 1] = py, px
                         fresh[b] = changed = True
                         if how == 2:
@@ -88,7 +115,10 @@ def pull_taut(blocked: Bytes, points: Points, radius: float) -> Points:
         line, pulled = pulled, line
         moved, fresh = fresh, moved
         if not changed:
-            break
+            count = leave_out(blocked, line, n, radius, moved)
+            if count == n:
+                break
+            n = count
     return line[:n].copy()
 
 

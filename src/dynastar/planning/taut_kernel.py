@@ -16,7 +16,7 @@ from dynastar.planning.segments import Bytes, is_clear
 
 CLOSE = 1e-7  # cells further than the radius, for the arithmetic's sake
 HERE = 1e-5  # cells; what touches so near to where a line begins does not say where it goes
-SHORTER = 1e-4  # cells; less is no gain
+SHORTER = 1e-3  # cells; less is no gain
 LEFT = -1  # the bend stays as it is
 
 # How many corners the string has in place of b, and the first and the last of them (y, x, y, x).
