@@ -46,5 +46,25 @@ def test_the_command_fills_a_page_with_table3(tmp_path, capsys):
         assert set(found[ratio]) == {"median", "mean", "p95", "worst"}
     assert "| hybrid, length m |" in page.read_text()
     assert page.read_text().startswith("a\n<!-- table3 -->\n**Table III over 2 worlds**")
-    assert main([*asked, "--docs", str(tmp_path / "no.md")]) == 2
-    assert "there is no such file" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("page", "said"),
+    [
+        (None, "there is no such file"),
+        ("<!-- table1 -->\n", "has no part between <!-- table1 --> and <!-- end table1 -->"),
+        (b"\xff\xfe\xff", "UTF-8"),
+    ],
+)
+def test_a_page_that_cannot_be_filled_is_said_before_the_work(tmp_path, capsys, page, said):
+    file = tmp_path / "page.md"
+    if page is not None:
+        file.write_bytes(page if isinstance(page, bytes) else page.encode())
+    assert main(["paper", "table3", "--docs", str(file), "--out", str(tmp_path / "out")]) == 2
+    assert said in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_is_no_file_for_json(tmp_path, capsys):
+    assert main(["paper", "table3", "--json-out", str(tmp_path)]) == 2
+    assert "that is a folder" in capsys.readouterr().err

@@ -52,7 +52,8 @@ def test_a_line_that_was_cut_off_is_made_again(tmp_path):
 
 
 def test_a_version_is_of_the_library_and_the_modules_named(tmp_path, monkeypatch):
-    for name in ("path.py", "dwa/dwa.py", "bench/paper.py", "bench/tables.py", "cli/run.py"):
+    bench = ("bench/paper.py", "bench/runner.py", "bench/tables.py")
+    for name in ("path.py", "dwa/dwa.py", *bench, "cli/run.py"):
         file = tmp_path / name
         file.parent.mkdir(exist_ok=True)
         file.write_text("1")
@@ -66,6 +67,7 @@ def test_a_version_is_of_the_library_and_the_modules_named(tmp_path, monkeypatch
     assert changed_by("path.py")
     assert changed_by("dwa/dwa.py", "paper")
     assert changed_by("bench/paper.py", "tables", "paper")
+    assert changed_by("bench/runner.py", "paper")
     assert not changed_by("bench/paper.py", "tables")
     assert not changed_by("cli/run.py", "paper")
     assert version("paper", "tables") == version("tables", "paper", "paper") != version("paper")

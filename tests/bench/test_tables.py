@@ -3,6 +3,7 @@ from pathlib import Path
 import pytest
 
 from dynastar.bench.tables import Table, as_markdown, as_text, fill
+from dynastar.errors import InputError
 
 TABLE = Table(
     "two", "Two rows", (("arm", ""), ("length", ".2f"), ("n", "d")),
@@ -29,5 +30,5 @@ def test_a_part_of_a_document_is_filled_again_and_again():
     once = fill(document, "two", "new", Path("x.md"))
     assert once == "a\n<!-- two -->\nnew\n<!-- end two -->\nb\n"
     assert fill(once, "two", "new", Path("x.md")) == once
-    with pytest.raises(ValueError, match=r"x\.md has no part between <!-- three -->"):
+    with pytest.raises(InputError, match=r"x\.md has no part between <!-- three -->"):
         fill(document, "three", "new", Path("x.md"))

@@ -236,3 +236,5 @@ def test_what_stands_in_a_wall_of_the_map_or_off_it_is_not_on_free_ground():
     places = np.array([(4.0, 3.0), (0.05, 3.0), (-0.3, 3.0), (4.0, 6.2), (7.5, 0.5)])
     assert chart().on_free_ground(places).tolist() == [[4.0, 3.0], [7.5, 0.5]]
     assert chart().on_free_ground(np.empty((0, 2))).shape == (0, 2)
+    unknown = np.full((60, 80), -1, np.int8)
+    assert len(chart(room(unknown)).on_free_ground(places)) == 2

@@ -108,6 +108,10 @@ def test_who_has_just_come_into_view_may_come_onto_the_path_from_there():
         onto = x + ux * (4.0 - y) / uy
         assert np.abs(PATH[:, 0] - onto).min() < 1e-9
         assert 1.0 < onto < 3.0  # the walls leave no more
+    wide = (1.5, 5.22, 2.5, 5.35)  # of whoever is as wide as the street
+    broad = view([(1.5, 5.35, 2.5, 8.0)], [*walls, wide])
+    assert len(lanes_of(np.array([[2.0, 5.85, 0.25]]), PATH, broad, RADIUS, NEAR)) == 0
+    assert len(lanes_of(np.array([[2.0, 5.85, 0.55]]), PATH, broad, RADIUS, NEAR))
     behind = view([], [*walls, face, (1.0, 4.3, 3.0, 4.5)])
     assert len(lanes_of(np.array([[2.0, 5.85, 0.25]]), PATH, behind, RADIUS, NEAR)) == 0
     assert (

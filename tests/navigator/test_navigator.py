@@ -104,6 +104,27 @@ def test_another_map_under_way_is_planned_on():
     drive.until("arrived")
 
 
+def test_another_map_revives_who_found_no_way_on_the_last():
+    drive = Drive(WALLED)
+    drive.navigator.set_goal(Goal(6.5, 3.0))
+    drive.until("blocked", seconds=60.0)
+    drive.navigator.set_map(room())
+    drive.lidar = LidarSimulator(drive.robot.lidar, room())
+    drive.until("arrived")
+    assert math.dist(drive.pose[:2], (6.5, 3.0)) < 0.3
+
+
+def test_data_that_come_back_after_the_end_are_no_reason_to_drive():
+    drive = Drive(room())
+    drive.tick()
+    drive.now += 1.0
+    for _ in range(3):
+        drive.navigator.command(drive.state, [])
+    assert drive.status.state == "sensor_lost"
+    assert drive.tick() == REST
+    assert drive.status.state == "idle"
+
+
 def test_a_start_inside_the_inflation_finds_its_way_out():
     drive = Drive(room(), pose=(0.38, 3.0, math.pi / 2))  # 3 cm from the wall
     drive.navigator.set_goal(Goal(6.5, 3.0))
@@ -265,7 +286,7 @@ def test_without_a_global_path_the_line_to_the_goal_is_all():
     free.tick()
     assert free.status.target == pytest.approx((4.0, 4.5))
     free.until("arrived")
-    assert (free.status.plan, free.status.replans) == (None, 0)
+    assert (free.status.plan, free.status.replans, free.status.recoveries) == (None, 0, 0)
     assert math.dist(free.pose[:2], (6.5, 3.0)) < 0.3
 
     cup = room(8.0, 6.0, (5.0, 1.5, 5.2, 4.5), (3.5, 1.3, 5.2, 1.5), (3.5, 4.5, 5.2, 4.7))

@@ -62,7 +62,9 @@ def version(*modules: str) -> str:
         if source.relative_to(package).parts[0] not in outside
     ]
     digest = hashlib.sha256()
-    for source in sorted([*sources, *(package / "bench" / f"{name}.py" for name in {"runner", *modules})]):
+    for source in sorted(
+        [*sources, *(package / "bench" / f"{name}.py" for name in {"runner", *modules})]
+    ):
         digest.update(source.read_bytes())
     return digest.hexdigest()[:16]
 

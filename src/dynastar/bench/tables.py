@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dynastar.errors import InputError
+
 Cell = str | int | float | None
 
 
@@ -70,13 +72,13 @@ def as_markdown(table: Table) -> str:
 def fill(document: str, name: str, text: str, where: Path) -> str:
     """A document whose part between ``<!-- name -->`` and ``<!-- end name -->`` is ``text`` now.
 
-    Raises ValueError, naming ``where``, if it has no such part.
+    Raises InputError, naming ``where``, if it has no such part.
     """
     begin, end = f"<!-- {name} -->", f"<!-- end {name} -->"
     before, found, rest = document.partition(begin)
     _, closed, after = rest.partition(end)
     if not (found and closed):
-        raise ValueError(f"{where} has no part between {begin} and {end}")
+        raise InputError(f"{where} has no part between {begin} and {end}")
     return f"{before}{begin}\n{text}\n{end}{after}"
 
 

@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -18,8 +19,10 @@ def execute(arguments: argparse.Namespace) -> int:
     to_file = arguments.json_out not in (None, "-")
     if to_file and not Path(arguments.json_out).absolute().parent.is_dir():
         raise InputError(f"--json-out {arguments.json_out}: its folder is not there; make it first")
-    if arguments.docs is not None and not arguments.docs.is_file():
-        raise InputError(f"--docs {arguments.docs}: there is no such file")
+    if to_file and Path(arguments.json_out).is_dir():
+        raise InputError(f"--json-out {arguments.json_out}: that is a folder; name a file")
+    if arguments.docs is not None:
+        _check(arguments.docs)
     asked = Asked(
         arguments.maps,
         min(arguments.worlds, arguments.maps),
@@ -46,6 +49,18 @@ def execute(arguments: argparse.Namespace) -> int:
     else:
         print(f"written into {asked.folder}")
     return 0
+
+
+def _check(file: Path) -> None:
+    """Before hours of work: that a page is there and every place for a table in it is closed."""
+    if not file.is_file():
+        raise InputError(f"--docs {file}: there is no such file")
+    try:
+        document = file.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise InputError(f"--docs {file}: is no text in UTF-8 ({error})") from None
+    for name in re.findall(r"<!-- (?!end )([\w-]+) -->", document):
+        fill(document, name, "", file)
 
 
 def _fill(file: Path, tables: Sequence[Table]) -> None:
