@@ -60,9 +60,14 @@ def test_corners_and_seams():
     assert segment_clear(single, (0.0, 1.0), (1.0, 1.0), 0.0)
 
 
-@given(st.integers(0, 10**9), st.sampled_from([0.0, 0.3, 0.7, 1.5, 2.2]), st.booleans())
+@given(
+    st.integers(0, 10**9),
+    st.sampled_from([0.0, 0.3, 0.7, 1.5, 2.2]),
+    st.booleans(),
+    st.sampled_from([0.0, 0.6, 1.7]),
+)
 @settings(max_examples=150, deadline=None)
-def test_a_smoothed_path_is_shorter_and_as_clear(seed, radius, rounded):
+def test_a_smoothed_path_is_shorter_and_as_clear(seed, radius, rounded, room):
     rng = np.random.default_rng(seed)
     blocked = rng.random((24, 30)) < (0.25 if radius < 0.5 else 0.03)
     inflated = inflate(blocked, radius)
@@ -74,7 +79,7 @@ def test_a_smoothed_path_is_shorter_and_as_clear(seed, radius, rounded):
         points = SearchGrid(inflated).search(start, goal, "improved").cells + 0.5
     except NoPath:
         return
-    smoothed = smooth(blocked, points, radius, 3.0 if rounded else 0.0)
+    smoothed = smooth(blocked, points, radius, 3.0 if rounded else 0.0, room)
     assert (smoothed[0] == points[0]).all()
     assert (smoothed[-1] == points[-1]).all()
     assert length(smoothed) <= length(points) + 1e-9
@@ -199,3 +204,26 @@ def test_twice_the_bends_in_the_open_take_hardly_more_than_twice_the_time():
 
     seconds(100)
     assert seconds(3000) < 8.0 * seconds(1000)
+
+
+@pytest.mark.parametrize("rounding", [0.0, 5.0])
+def test_room_is_kept_from_corners_where_there_is_room(rounding):
+    blocked = np.zeros((60, 60), dtype=bool)
+    blocked[:40, 28:32] = True
+    points = SearchGrid(inflate(blocked, 3.0)).search((10, 10), (10, 50)).cells + 0.5
+    hugging = smooth(blocked, points, 3.0, rounding)
+    roomy = smooth(blocked, points, 3.0, rounding, room=0.45)  # the grid path keeps 3.5
+    assert clearance(blocked, hugging) == pytest.approx(3.0, abs=0.1)
+    assert clearance(blocked, roomy) >= 3.45 - 1e-9
+    assert length(hugging) < length(roomy) < length(points)
+
+
+def test_where_there_is_no_room_the_string_is_pulled_all_the_same():
+    blocked = np.zeros((40, 60), dtype=bool)
+    blocked[:18, 30] = blocked[25:, 30] = True  # a gap of 7 cells
+    points = SearchGrid(inflate(blocked, 3.3)).search((10, 5), (10, 55)).cells + 0.5
+    tight = smooth(blocked, points, 3.3)
+    pressed = smooth(blocked, points, 3.3, room=2.0)
+    assert clearance(blocked, pressed) >= 3.3 - 1e-9
+    assert length(pressed) <= 1.01 * length(tight)
+    assert length(pressed) < 0.97 * length(points)

@@ -72,17 +72,17 @@ def leave_out(
 
 
 @njit(cache=True)
-def pull_taut(blocked: Bytes, points: Points, radius: float) -> Points:
-    """Pulls every corner, round after round, until none gets shorter.
+def pull_taut(blocked: Bytes, points: Points, radius: float, room: float) -> Points:
+    """Pulls every corner, round after round, until none gets shorter; ``room`` as in ``smooth``.
 
     A round looks at a corner once, and only if it or a neighbour has moved since the last look. After
     some that were pulled straight in a row the next is left for the next round, which so has few of
     them left in open space, and long ways stay cheap.
     """
-    room = 3 * len(points) + 64
-    line, pulled = np.empty((room, 2)), np.empty((room, 2))
-    moved, fresh = np.ones(room, np.bool_), np.empty(room, np.bool_)
-    kept = np.empty(room, np.bool_)
+    most = 3 * len(points) + 64
+    line, pulled = np.empty((most, 2)), np.empty((most, 2))
+    moved, fresh = np.ones(most, np.bool_), np.empty(most, np.bool_)
+    kept = np.empty(most, np.bool_)
     n = bends(points, line)
     for _ in range(ROUNDS):
         pulled[0], fresh[0], kept[0] = line[0], False, moved[0]
@@ -96,12 +96,12 @@ def pull_taut(blocked: Bytes, points: Points, radius: float) -> Points:
                 a, b = count - 2, count - 1
                 if moved[i] or fresh[a] or fresh[b] or kept[a] or kept[b]:
                     ay, ax, by, bx = pulled[a, 0], pulled[a, 1], pulled[b, 0], pulled[b, 1]
-                    how, py, px, qy, qx = pulled_bend(blocked, ay, ax, by, bx, y, x, radius)
+                    how, py, px, qy, qx = pulled_bend(blocked, ay, ax, by, bx, y, x, radius, room)
                     straightened = straightened + 1 if how == 0 else 0
                     if how == 0:
                         count = b
                         fresh[a] = fresh_here = changed = True
-                    elif how == 1 or (how == 2 and count + 1 + n - i <= room):
+                    elif how == 1 or (how == 2 and count + 1 + n - i <= most):
                         pulled[b, 0], pulled[b, 1] = py, px
                         fresh[b] = changed = True
                         if how == 2:
@@ -115,7 +115,7 @@ def pull_taut(blocked: Bytes, points: Points, radius: float) -> Points:
         line, pulled = pulled, line
         moved, fresh = fresh, moved
         if not changed:
-            count = leave_out(blocked, line, n, radius, moved)
+            count = leave_out(blocked, line, n, radius + room, moved)
             if count == n:
                 break
             n = count
@@ -156,7 +156,7 @@ def join_close(blocked: Bytes, points: Points, radius: float) -> Points:
 
 
 @njit(cache=True)
-def bevel(blocked: Bytes, points: Points, radius: float, largest: float) -> Points:
+def bevel(blocked: Bytes, points: Points, radius: float, largest: float, room: float) -> Points:
     """Cuts every corner once, up to ``largest`` cells from it, as far as the disc can follow."""
     result = np.empty((2 * len(points), 2))
     result[0] = points[0]
@@ -168,9 +168,11 @@ def bevel(blocked: Bytes, points: Points, radius: float, largest: float) -> Poin
         cut = min(largest, 0.4 * back_length, 0.4 * ahead_length)
         cosine = -(back[0] * ahead[0] + back[1] * ahead[1]) / max(back_length * ahead_length, 1e-12)
         done = cosine > STRAIGHT_ENOUGH
+        roomy = is_clear(blocked, corner[0], corner[1], corner[0], corner[1], radius + room)
+        need = radius + room if roomy else radius
         while not done and cut >= SMALLEST_CUT:
             a, b = corner + back * (cut / back_length), corner + ahead * (cut / ahead_length)
-            done = is_clear(blocked, a[0], a[1], b[0], b[1], radius)
+            done = is_clear(blocked, a[0], a[1], b[0], b[1], need)
             if done:
                 result[count], result[count + 1] = a, b
                 count += 2
@@ -183,29 +185,36 @@ def bevel(blocked: Bytes, points: Points, radius: float, largest: float) -> Poin
 
 
 @njit(cache=True)
-def smooth_kernel(blocked: Bytes, points: Points, radius: float, rounding: float) -> Points:
+def smooth_kernel(
+    blocked: Bytes, points: Points, radius: float, rounding: float, room: float
+) -> Points:
     """``smooth`` on arrays of one type."""
-    smoothed = pull_taut(blocked, points, radius)
+    smoothed = pull_taut(blocked, points, radius, room)
     joined = join_close(blocked, smoothed, radius)
     if polyline_length(joined) <= polyline_length(points):
         smoothed = joined
     if rounding > 0.0:
         for _ in range(BEVELS):
-            smoothed = bevel(blocked, smoothed, radius, rounding)
+            smoothed = bevel(blocked, smoothed, radius, rounding, room)
     return smoothed
 
 
 def smooth(
-    blocked: npt.ArrayLike, points: npt.ArrayLike, radius: float, rounding: float = 0.0
+    blocked: npt.ArrayLike,
+    points: npt.ArrayLike,
+    radius: float,
+    rounding: float = 0.0,
+    room: float = 0.0,
 ) -> Points:
     """A shorter polyline from the first to the last of ``points`` that a disc can follow.
 
     ``blocked`` is [rows, columns]; ``points`` (n, 2) are (row, column) in fractions of cells;
-    ``radius``, the disc's, and ``rounding``, how far from a corner its rounding may begin, are in
+    ``radius``, the disc's, ``rounding``, how far from a corner its rounding may begin, and ``room``,
+    how much further than the radius it keeps from the corners that it goes round if it can, are in
     cells. The result is nowhere closer to a blocked cell than the radius if the polyline given is
     not, and never longer; see ``segment_clear`` for what counts.
     """
     line = np.array(points, dtype=np.float64).reshape(-1, 2)
     if len(line) < 3:
         return line
-    return smooth_kernel(mask_bytes(blocked), line, float(radius), float(rounding))
+    return smooth_kernel(mask_bytes(blocked), line, float(radius), float(rounding), float(room))

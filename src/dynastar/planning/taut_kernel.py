@@ -144,31 +144,57 @@ def taut_bend(
 
 
 @njit(cache=True)
+def by_two(
+    ay: float, ax: float, py: float, px: float, qy: float, qx: float, cy: float, cx: float
+) -> float:
+    """Length of the way from a to c by p and q."""
+    length = math.hypot(py - ay, px - ax) + math.hypot(qy - py, qx - px)
+    return length + math.hypot(cy - qy, cx - qx)
+
+
+@njit(cache=True)
+def all_clear(
+    blocked: Bytes, ay: float, ax: float, py: float, px: float,
+    qy: float, qx: float, cy: float, cx: float, radius: float,
+) -> bool:  # fmt: skip
+    """Whether a disc can go from a to c by p and q, which may be one."""
+    return (
+        is_clear(blocked, ay, ax, py, px, radius)
+        and is_clear(blocked, qy, qx, cy, cx, radius)
+        and ((py == qy and px == qx) or is_clear(blocked, py, px, qy, qx, radius))
+    )
+
+
+@njit(cache=True)
 def pulled_bend(
-    blocked: Bytes, ay: float, ax: float, by: float, bx: float, cy: float, cx: float, radius: float
-) -> Bend:
+    blocked: Bytes, ay: float, ax: float, by: float, bx: float, cy: float, cx: float,
+    radius: float, room: float,
+) -> Bend:  # fmt: skip
     """What a pull makes of the bend at b: shorter, and clear for a disc that can go by b; see ``Bend``.
 
+    It keeps ``room`` more than the radius from the corners that it goes round, if there is so much.
     Where the taut string is caught by more than two corners, the bend is only cut, for the next pull
     to go on with. ``LEFT`` stands first where nothing gets shorter.
     """
-    how, py, px, qy, qx = taut_bend(blocked, ay, ax, by, bx, cy, cx, radius)
-    if how == LEFT or (how == 0 and is_clear(blocked, ay, ax, cy, cx, radius)):
-        return how, py, px, qy, qx
     now = math.hypot(by - ay, bx - ax) + math.hypot(cy - by, cx - bx)
-    share = 1.0
-    while how > 0 and share > 0.05:
-        length = math.hypot(py - ay, px - ax) + math.hypot(qy - py, qx - px)
-        length += math.hypot(cy - qy, cx - qx)
-        if length > now - SHORTER:
-            break
-        if (
-            is_clear(blocked, ay, ax, py, px, radius)
-            and is_clear(blocked, qy, qx, cy, cx, radius)
-            and (how == 1 or is_clear(blocked, py, px, qy, qx, radius))
-        ):
+    for more in (room, 0.0):
+        how, py, px, qy, qx = taut_bend(blocked, ay, ax, by, bx, cy, cx, radius + more)
+        if how == 0 and is_clear(blocked, ay, ax, cy, cx, radius):
             return how, py, px, qy, qx
-        how, share = 2, 0.5 * share
+        if how > 0:
+            if by_two(ay, ax, py, px, qy, qx, cy, cx) > now - SHORTER:
+                return LEFT, 0.0, 0.0, 0.0, 0.0
+            if all_clear(blocked, ay, ax, py, px, qy, qx, cy, cx, radius):
+                return how, py, px, qy, qx
+        if room == 0.0:
+            break
+    share = 0.5
+    while how > 0 and share > 0.05:
         py, px = by + share * (ay - by), bx + share * (ax - bx)
         qy, qx = by + share * (cy - by), bx + share * (cx - bx)
+        if by_two(ay, ax, py, px, qy, qx, cy, cx) > now - SHORTER:
+            break
+        if all_clear(blocked, ay, ax, py, px, qy, qx, cy, cx, radius):
+            return 2, py, px, qy, qx
+        share *= 0.5
     return LEFT, 0.0, 0.0, 0.0, 0.0
