@@ -60,7 +60,7 @@ def test_the_command_makes_the_table_and_goes_on_where_it_was(tmp_path, capsys):
     assert found["table1_512"]["all"]["total_time_ratio"]["median"] < 1.0
     assert "length_ratio" not in found["table1_512"]["all"]
     assert len((out / "table1.csv").read_text().splitlines()) == 5
-    assert (out / "table1.md").read_text().count("| traditional A* (octile) |") == 4
+    assert (out / "table1.md").read_text().count(r"| traditional A\* (octile) |") == 4
     for suffix in (".png", ".svg"):
         assert (out / f"table1{suffix}").stat().st_size > 10_000
     lines = (out / "table1.jsonl").read_text().splitlines()

@@ -32,3 +32,9 @@ def test_a_part_of_a_document_is_filled_again_and_again():
     assert fill(once, "two", "new", Path("x.md")) == once
     with pytest.raises(InputError, match=r"x\.md has no part between <!-- three -->"):
         fill(document, "three", "new", Path("x.md"))
+
+
+def test_a_star_is_a_star_in_markdown():
+    text = as_markdown(TABLE._replace(title="Over A*", rows=[("A*, octile", 1.0, 2)]))
+    assert text.startswith("**Over A\\***\n")
+    assert "| A\\*, octile | 1.00 | 2 |" in text

@@ -256,7 +256,8 @@ def test_the_target_by_distance_alone_lies_behind_the_corner():
         ahead[how] = path.project(*drive.status.target)
         assert math.dist(path.at(ahead[how]), drive.status.target) < 1e-6
         assert drive.status.state == "following"
-        drive.until("arrived")
+        if how == "visible":  # the other drives at the wall's end, and may stay there
+            drive.until("arrived")
     lookahead = NavigatorConfig().lookahead
     assert ahead["visible"] < lookahead - 0.1
     assert ahead["distance"] == pytest.approx(lookahead, abs=0.05)

@@ -66,7 +66,9 @@ def as_markdown(table: Table) -> str:
     first, *rows = table.cells
     aligned = [":--", *("--:" for _ in first[1:])]
     lines = [f"| {' | '.join(row)} |" for row in (first, aligned, *rows)]
-    return "\n\n".join(filter(None, [f"**{table.title}**", "\n".join(lines), table.notes]))
+    parts = [f"**{table.title}**", "\n".join(lines), table.notes]
+    # A star is one here, and not the begin of something bold.
+    return "\n\n".join(part.replace("A*", "A\\*") for part in parts if part)
 
 
 def fill(document: str, name: str, text: str, where: Path) -> str:
