@@ -45,7 +45,8 @@ def add(chart: Chart, block: Block) -> None:
     at_y = frame.y + (rows + 0.5) * frame.resolution
     mask = (at_x > x) & (at_x < x + side) & (at_y > y) & (at_y < y + side)
     chart.seen |= mask
-    chart._mark(mask, np.zeros(2, np.int64))
+    rows, columns = np.nonzero(mask)
+    chart._mark(rows.min(), rows.max() + 1, columns.min(), columns.max() + 1)
 
 
 def visible(scenario: Scenario, solid: npt.NDArray[np.bool_], at: Path, block: Block) -> bool:
