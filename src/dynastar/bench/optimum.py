@@ -42,6 +42,5 @@ def _beside_corners(occupied: Mask) -> Points:
         (-1, 1, high_left, low_right, (low_left, high_right)),
     ):
         stands_out = behind & ~here & ~beside[0] & ~beside[1]
-        joined = ~behind & ~here & beside[0] & beside[1]  # two cells across, seen from here
-        found.append(np.argwhere(stands_out | joined) + 1 + BESIDE * np.array([y, x]))
+        found.append(np.argwhere(stands_out) + 1 + BESIDE * np.array([y, x]))
     return np.vstack(found)

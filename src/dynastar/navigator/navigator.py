@@ -242,6 +242,10 @@ class Navigator:
             )
         if self.progress.note(now, left, bearing):
             self.recovery.progressed(now)
+        careful = self.lookout.speed(
+            now, state.twist.v, self._wary, self._path, self._s,
+            self.senses.layer, self.chart, self.senses.tracker,
+        )  # fmt: skip
         wish = Wish(
             target,
             self._path.paced(
@@ -252,16 +256,7 @@ class Navigator:
                 self._profile.at(self._s),
                 self._profile.at(self._s + state.twist.v * (2.0 * config.period + config.latency)),
                 self._wary,
-                self.lookout.speed(
-                    now,
-                    state.twist.v,
-                    self._wary,
-                    self._path,
-                    self._s,
-                    self.senses.layer,
-                    self.chart,
-                    self.senses.tracker,
-                ),
+                careful,
                 float(bend_speed(abs(bearing), self.robot.limits)),
             ),
         )

@@ -69,20 +69,17 @@ def columns_between(
 
 @njit(cache=True)
 def convex_corner(blocked: Bytes, row: int, column: int) -> tuple[bool, int, int]:
-    """Whether a cell's low corner is a blocked cell's alone, or that of two across; and which way it lies.
+    """Whether a cell's low corner is that of one blocked cell alone, and which way that lies.
 
-    (0, 0) stands for both ways.
+    Where two touch across, what is free on either side is a corner to go into and none to go round.
     """
     low, low_right = np.int64(blocked[row - 1, column - 1]), np.int64(blocked[row - 1, column])
     high, high_right = np.int64(blocked[row, column - 1]), np.int64(blocked[row, column])
-    count = low + low_right + high + high_right
-    if count == 1:
-        return (
-            True,
-            int(high + high_right - low - low_right),
-            int(low_right + high_right - low - high),
-        )
-    return count == 2 and low == high_right, 0, 0
+    return (
+        low + low_right + high + high_right == 1,
+        int(high + high_right - low - low_right),
+        int(low_right + high_right - low - high),
+    )
 
 
 @njit(cache=True)
