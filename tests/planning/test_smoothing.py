@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from dynastar.clearance import inflate
 from dynastar.errors import NoPath
 from dynastar.planning import SearchGrid, segment_clear, smooth
+from dynastar.planning.taut_kernel import edge
 from naive import clearance, slips_through
 
 
@@ -222,3 +223,39 @@ def test_where_there_is_no_room_the_string_is_pulled_all_the_same():
     assert clearance(blocked, pressed) >= 3.3 - 1e-9
     assert length(pressed) <= 1.01 * length(tight)
     assert length(pressed) < 0.97 * length(points)
+
+
+@given(st.integers(0, 10**9), st.sampled_from([0.0, 0.4, 2.0]))
+@settings(max_examples=200, deadline=None)
+def test_no_corner_near_a_triangle_is_overlooked(seed, radius):
+    """A string's bend is sought among rows and columns that hold the triangle and all near to it."""
+    rng = np.random.default_rng(seed)
+    a, b, c = corners = rng.integers(0, 41, (3, 2)) / rng.choice([1.0, 2.0, 3.0])
+    side = float(np.sign((b - a)[1] * (c - a)[0] - (b - a)[0] * (c - a)[1]))
+    assume(side != 0.0)
+    shares = rng.dirichlet(np.ones(3) * rng.choice([0.1, 1.0]), 200)
+    turn = rng.uniform(0.0, 2.0 * np.pi, 200)
+    ring = rng.choice([0.0, radius], (200, 1)) * np.column_stack([np.sin(turn), np.cos(turn)])
+    y, x = (shares @ corners + ring).T
+    for (ey, ex), (oy, ox) in ((a, b), (b, c), (c, a)):
+        slope, lowest, highest = edge(ey, ex, oy, ox, side, radius + 1e-6)
+        on = ex + slope * (y - ey)
+        assert ((x >= on + lowest) & (x <= on + highest)).all()
+    further = 2.0 * radius + 1.0
+    across = (b - a)[::-1] * [1.0, -1.0] / np.hypot(*(b - a))  # at right angles to a - b, and out
+    away = 0.5 * (a + b) + further * across * (1.0 if across @ (c - a) < 0.0 else -1.0)
+    slope, lowest, highest = edge(*a, *b, side, radius)
+    on = a[1] + slope * (away[0] - a[0])
+    assert a[0] == b[0] or not on + lowest <= away[1] <= on + highest
+
+
+@pytest.mark.parametrize("wrong", [math.nan, math.inf])
+def test_what_is_not_finite_is_refused(wrong):
+    blocked = np.zeros((9, 9), bool)
+    way = [[0.5, 0.5], [0.5, wrong], [8.5, 8.5]]
+    with pytest.raises(ValueError, match=r"has the point .*(nan|inf).*: expected finite numbers"):
+        smooth(blocked, way, 0.0)
+    way[1][1] = 8.5
+    for numbers in ((wrong, 0.0, 0.0), (0.0, wrong, 0.0), (0.0, 0.0, wrong), (-1.0, 0.0, 0.0)):
+        with pytest.raises(ValueError, match="radius, rounding and room are"):
+            smooth(blocked, way, *numbers)

@@ -16,6 +16,12 @@ EPSILON = 5e-10  # cells; a gap this much too small is none
 
 
 @njit(cache=True)
+def norm(y: float, x: float) -> float:
+    """Length of (y, x), without the guard against overflow that makes ``hypot`` slow."""
+    return math.sqrt(y * y + x * x)
+
+
+@njit(cache=True)
 def crosses_box(
     ay: float, ax: float, by: float, bx: float,
     low_y: float, low_x: float, high_y: float, high_x: float,
@@ -41,7 +47,7 @@ def gap_to_point(ay: float, ax: float, by: float, bx: float, y: float, x: float)
     t = 0.0
     if square > 0.0:
         t = min(max(((y - ay) * dy + (x - ax) * dx) / square, 0.0), 1.0)
-    return math.hypot(ay + t * dy - y, ax + t * dx - x)
+    return norm(ay + t * dy - y, ax + t * dx - x)
 
 
 @njit(cache=True)
@@ -52,7 +58,7 @@ def gap_to_cell(ay: float, ax: float, by: float, bx: float, r: float, c: float) 
     gap = math.inf
     for y, x in ((ay, ax), (by, bx)):
         beyond_y, beyond_x = abs(y - r - 0.5) - 0.5, abs(x - c - 0.5) - 0.5
-        gap = min(gap, math.hypot(max(beyond_y, 0.0), max(beyond_x, 0.0)))
+        gap = min(gap, norm(max(beyond_y, 0.0), max(beyond_x, 0.0)))
     for y, x in ((r, c), (r, c + 1.0), (r + 1.0, c), (r + 1.0, c + 1.0)):
         gap = min(gap, gap_to_point(ay, ax, by, bx, y, x))
     return gap
@@ -98,12 +104,13 @@ def is_clear(blocked: Bytes, ay: float, ax: float, by: float, bx: float, radius:
         return False
     reach = max(radius, 0.0) + EPSILON
     dy, dx = by - ay, bx - ax
+    per_dy = 1.0 / dy if abs(dy) > EPSILON else 0.0  # 0 for one that stays in its rows
     first = max(math.floor(min(ay, by) - reach), 0)
     last = min(math.floor(max(ay, by) + reach), rows - 1)
     for r in range(first, last + 1):
         enter, leave = 0.0, 1.0
-        if dy != 0.0:
-            low, high = (r - reach - ay) / dy, (r + 1 + reach - ay) / dy
+        if per_dy != 0.0:
+            low, high = (r - reach - ay) * per_dy, (r + 1 + reach - ay) * per_dy
             enter, leave = max(min(low, high), 0.0), min(max(low, high), 1.0)
         x0, x1 = ax + enter * dx, ax + leave * dx
         left = max(math.floor(min(x0, x1) - reach), 0)
@@ -124,7 +131,7 @@ def first_contact(blocked: Bytes, points: npt.NDArray[np.float64], radius: float
     gone = 0.0
     for i in range(len(points) - 1):
         ay, ax, by, bx = points[i, 0], points[i, 1], points[i + 1, 0], points[i + 1, 1]
-        length = math.hypot(by - ay, bx - ax)
+        length = norm(by - ay, bx - ax)
         if not is_clear(blocked, ay, ax, by, bx, radius):
             free, stopped = 0.0, 1.0
             while (stopped - free) * length > 1e-3:

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.compiled import njit
-from dynastar.planning.segments import Bytes, is_clear, mask_bytes
+from dynastar.planning.segments import Bytes, is_clear, mask_bytes, norm
 from dynastar.planning.taut_kernel import pulled_bend
 
 Points = npt.NDArray[np.float64]
@@ -24,7 +24,7 @@ def polyline_length(points: Points) -> float:
     """Length of a polyline (n, 2)."""
     length = 0.0
     for i in range(len(points) - 1):
-        length += np.hypot(points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1])
+        length += norm(points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1])
     return length
 
 
@@ -46,7 +46,7 @@ def bends(points: Points, line: Points) -> int:
 @njit(cache=True)
 def gap(points: Points, i: int, y: float, x: float) -> float:
     """From a polyline's point ``i`` to another place."""
-    return math.hypot(y - points[i, 0], x - points[i, 1])
+    return norm(y - points[i, 0], x - points[i, 1])
 
 
 @njit(cache=True)
@@ -164,7 +164,7 @@ def bevel(blocked: Bytes, points: Points, radius: float, largest: float, room: f
     for i in range(1, len(points) - 1):
         corner = points[i]
         back, ahead = points[i - 1] - corner, points[i + 1] - corner
-        back_length, ahead_length = np.hypot(back[0], back[1]), np.hypot(ahead[0], ahead[1])
+        back_length, ahead_length = norm(back[0], back[1]), norm(ahead[0], ahead[1])
         cut = min(largest, 0.4 * back_length, 0.4 * ahead_length)
         cosine = -(back[0] * ahead[0] + back[1] * ahead[1]) / max(back_length * ahead_length, 1e-12)
         done = cosine > STRAIGHT_ENOUGH
@@ -188,10 +188,13 @@ def bevel(blocked: Bytes, points: Points, radius: float, largest: float, room: f
 def smooth_kernel(
     blocked: Bytes, points: Points, radius: float, rounding: float, room: float
 ) -> Points:
-    """``smooth`` on arrays of one type."""
+    """``smooth`` on arrays of one type; no points at all where some given are not finite."""
+    length = polyline_length(points)
+    if not math.isfinite(length):
+        return np.empty((0, 2))
     smoothed = pull_taut(blocked, points, radius, room)
     joined = join_close(blocked, smoothed, radius)
-    if polyline_length(joined) <= polyline_length(points):
+    if polyline_length(joined) <= length:
         smoothed = joined
     if rounding > 0.0:
         for _ in range(BEVELS):
@@ -212,9 +215,19 @@ def smooth(
     ``radius``, the disc's, ``rounding``, how far from a corner its rounding may begin, and ``room``,
     how much further than the radius it keeps from the corners that it goes round if it can, are in
     cells. The result is nowhere closer to a blocked cell than the radius if the polyline given is
-    not, and never longer; see ``segment_clear`` for what counts.
+    not, and never longer; see ``segment_clear`` for what counts. Raises ValueError for a point that
+    is not finite, and for a radius, rounding or room that is not, or is below 0.
     """
     line = np.array(points, dtype=np.float64).reshape(-1, 2)
+    if not (0.0 <= radius < math.inf and 0.0 <= rounding < math.inf and 0.0 <= room < math.inf):
+        raise ValueError(
+            f"radius, rounding and room are {radius}, {rounding} and {room}: "
+            "expected finite numbers of cells, 0 or more"
+        )
     if len(line) < 3:
         return line
-    return smooth_kernel(mask_bytes(blocked), line, float(radius), float(rounding), float(room))
+    smoothed = smooth_kernel(mask_bytes(blocked), line, float(radius), float(rounding), float(room))
+    if len(smoothed) == 0:
+        bad = line[~np.isfinite(line).all(axis=1)][:1].tolist()
+        raise ValueError(f"a polyline to smooth has the point {bad}: expected finite numbers")
+    return smoothed

@@ -12,11 +12,12 @@ import math
 import numpy as np
 
 from dynastar.compiled import njit
-from dynastar.planning.segments import Bytes, is_clear
+from dynastar.planning.segments import Bytes, is_clear, norm
 
 CLOSE = 1e-7  # cells further than the radius, for the arithmetic's sake
 HERE = 1e-5  # cells; what touches so near to where a line begins does not say where it goes
 SHORTER = 1e-3  # cells; less is no gain
+LEVEL = 1e-9  # cells; an edge that rises less says nothing of columns
 LEFT = -1  # the bend stays as it is
 
 # How many corners the string has in place of b, and the first and the last of them (y, x, y, x).
@@ -44,7 +45,7 @@ def touches_before(
     if side * (ux * ty - uy * tx) >= 0.0 or side * (tx * qy - ty * qx) < 0.0:
         return False, uy, ux
     wy, wx, ey, ex = by - ay, bx - ax, cy - by, cx - bx
-    if side * (wx * ty - wy * tx) < -1e-6 * math.hypot(wy, wx):  # outside of a - b
+    if side * (wx * ty - wy * tx) < -1e-6 * norm(wy, wx):  # outside of a - b
         return False, uy, ux
     across = side * (tx * ey - ty * ex)
     if across <= 0.0 or along * across >= side * (wx * ey - wy * ex):  # beyond b - c
@@ -53,18 +54,22 @@ def touches_before(
 
 
 @njit(cache=True)
-def columns_between(
-    ay: float, ax: float, by: float, bx: float, low: float, high: float, left: float, right: float
-) -> tuple[float, float]:
-    """The columns left to right, and those of the part of a - b whose rows are from low to high."""
-    begin, end = 0.0, 1.0
-    if by != ay:
-        s, t = (low - ay) / (by - ay), (high - ay) / (by - ay)
-        begin, end = max(min(s, t), 0.0), min(max(s, t), 1.0)
-    if begin > end or max(ay, by) < low or min(ay, by) > high:
-        return left, right
-    s, t = ax + begin * (bx - ax), ax + end * (bx - ax)
-    return min(left, s, t), max(right, s, t)
+def edge(
+    ay: float, ax: float, by: float, bx: float, side: float, r: float
+) -> tuple[float, float, float]:
+    """What lies inside the edge a - b of a triangle, or up to r outside: slope, lowest and highest.
+
+    In a row y these are columns from ax + slope (y - ay) + lowest to the same + highest. The inside
+    is on the left of the edge where ``side`` is 1, on the right where it is -1.
+    """
+    dy, dx = by - ay, bx - ax
+    if abs(dy) < LEVEL:
+        return 0.0, -math.inf, math.inf
+    slope = dx / dy
+    further = r * math.sqrt(1.0 + slope * slope)
+    if side * dy < 0.0:
+        return slope, -further, math.inf
+    return slope, -math.inf, further
 
 
 @njit(cache=True)
@@ -88,7 +93,7 @@ def taut_bend(
 ) -> Bend:
     """The bends that a taut string has between a and c, where it has one at b now; see ``Bend``."""
     wy, wx, vy, vx = by - ay, bx - ax, cy - ay, cx - ax
-    turn, length = wx * vy - wy * vx, math.hypot(vy, vx)
+    turn, length = wx * vy - wy * vx, norm(vy, vx)
     if length < 1e-9 or abs(turn) < 1e-9:
         return 0, 0.0, 0.0, 0.0, 0.0
     side = 1.0 if turn > 0.0 else -1.0
@@ -98,16 +103,19 @@ def taut_bend(
     oy = ox = qy = qx = 0.0  # what they touch
     caught = False
     rows, columns = blocked.shape
-    for row in range(
-        max(math.ceil(min(ay, by, cy) - r), 1), min(math.floor(max(ay, by, cy) + r), rows - 1) + 1
-    ):
-        low, high = row - r, row + r
-        left, right = columns_between(ay, ax, by, bx, low, high, math.inf, -math.inf)
-        left, right = columns_between(by, bx, cy, cx, low, high, left, right)
-        left, right = columns_between(ay, ax, cy, cx, low, high, left, right)
-        if left > right:
-            continue
-        first, last = max(math.ceil(left - r), 1), min(math.floor(right + r), columns - 1)
+    low, high = (
+        max(math.ceil(min(ay, by, cy) - r), 1),
+        min(math.floor(max(ay, by, cy) + r), rows - 1),
+    )
+    left, right = max(min(ax, bx, cx) - r, 1.0), min(max(ax, bx, cx) + r, columns - 1.0)
+    slope_a, low_a, high_a = edge(ay, ax, by, bx, side, r)
+    slope_b, low_b, high_b = edge(by, bx, cy, cx, side, r)
+    slope_c, low_c, high_c = edge(cy, cx, ay, ax, side, r)
+    for row in range(low, high + 1):
+        x_a, x_b = ax + slope_a * (row - ay), bx + slope_b * (row - by)
+        x_c = cx + slope_c * (row - cy)
+        first = math.ceil(max(left, x_a + low_a, x_b + low_b, x_c + low_c))
+        last = math.floor(min(right, x_a + high_a, x_b + high_b, x_c + high_c))
         for column in range(first, last + 1):
             convex, gy, gx = convex_corner(blocked, row, column)
             if not convex:
@@ -127,7 +135,7 @@ def taut_bend(
     s = (vx * ty - vy * tx) / across
     my, mx = ay + s * uy, ax + s * ux
     dy, dx = qy - oy, qx - ox
-    apart = math.hypot(dy, dx)
+    apart = norm(dy, dx)
     from_a, from_c = ux * dy - uy * dx, tx * dy - ty * dx
     if apart == 0.0 or abs(from_a) < 1e-9 or abs(from_c) < 1e-9:
         return 1, my, mx, my, mx
@@ -135,7 +143,7 @@ def taut_bend(
     zy, zx = oy - side * r * dx / apart, ox + side * r * dy / apart
     at_a = ((zx - ax) * dy - (zy - ay) * dx) / from_a
     at_c = ((zx - cx) * dy - (zy - cy) * dx) / from_c
-    if 0.0 < at_a < s and 0.0 < at_c < math.hypot(my - cy, mx - cx):
+    if 0.0 < at_a < s and 0.0 < at_c < norm(my - cy, mx - cx):
         return 2, ay + at_a * uy, ax + at_a * ux, cy + at_c * ty, cx + at_c * tx
     return 1, my, mx, my, mx
 
@@ -145,8 +153,8 @@ def by_two(
     ay: float, ax: float, py: float, px: float, qy: float, qx: float, cy: float, cx: float
 ) -> float:
     """Length of the way from a to c by p and q."""
-    length = math.hypot(py - ay, px - ax) + math.hypot(qy - py, qx - px)
-    return length + math.hypot(cy - qy, cx - qx)
+    length = norm(py - ay, px - ax) + norm(qy - py, qx - px)
+    return length + norm(cy - qy, cx - qx)
 
 
 @njit(cache=True)
@@ -173,7 +181,7 @@ def pulled_bend(
     Where the taut string is caught by more than two corners, the bend is only cut, for the next pull
     to go on with. ``LEFT`` stands first where nothing gets shorter.
     """
-    now = math.hypot(by - ay, bx - ax) + math.hypot(cy - by, cx - bx)
+    now = norm(by - ay, bx - ax) + norm(cy - by, cx - bx)
     for more in (room, 0.0):
         how, py, px, qy, qx = taut_bend(blocked, ay, ax, by, bx, cy, cx, radius + more)
         if how == 0 and is_clear(blocked, ay, ax, cy, cx, radius):
