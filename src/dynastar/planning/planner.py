@@ -42,9 +42,6 @@ class PlannerConfig(NamedTuple):
         Field("the path is pulled taut, or also the shortest near it at any angle; or stays"),
     ] = "taut"
     rounding: Annotated[float, Field("where a corner's rounding may begin", "m", 0.0, 10.0)] = 0.5
-    room: Annotated[
-        float, Field("so much more than the radius from corners, if there is", "m", 0.0, 10.0)
-    ] = 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,12 +173,11 @@ class GridPlanner:
         line = grid_line
         if self.config.smoothing != "none":
             rounding = self.config.rounding / self.grid.resolution
-            room = self.config.room / self.grid.resolution
             lead = smooth(self._blocked, lead, 0.0)
             if self.config.smoothing == "any-angle":
                 taut = smooth(self._blocked, main, self._radius_cells)
                 main = straighten(self._blocked, main, self._radius_cells, taut)
-            main = smooth(self._blocked, main, self._radius_cells, rounding, room)
+            main = smooth(self._blocked, main, self._radius_cells, rounding)
             line = np.vstack([lead, main[1:]])
         time_ms = 1e3 * (time.perf_counter() - began)
         lead_steps = np.diff(lead, axis=0)

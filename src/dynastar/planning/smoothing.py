@@ -72,8 +72,8 @@ def leave_out(
 
 
 @njit(cache=True)
-def pull_taut(blocked: Bytes, points: Points, radius: float, room: float) -> Points:
-    """Pulls every corner, round after round, until none gets shorter; ``room`` as in ``smooth``.
+def pull_taut(blocked: Bytes, points: Points, radius: float) -> Points:
+    """Pulls every corner, round after round, until none gets shorter.
 
     A round looks at a corner once, and only if it or a neighbour has moved since the last look. After
     some that were pulled straight in a row the next is left for the next round, which so has few of
@@ -96,7 +96,7 @@ def pull_taut(blocked: Bytes, points: Points, radius: float, room: float) -> Poi
                 a, b = count - 2, count - 1
                 if moved[i] or fresh[a] or fresh[b] or kept[a] or kept[b]:
                     ay, ax, by, bx = pulled[a, 0], pulled[a, 1], pulled[b, 0], pulled[b, 1]
-                    how, py, px, qy, qx = pulled_bend(blocked, ay, ax, by, bx, y, x, radius, room)
+                    how, py, px, qy, qx = pulled_bend(blocked, ay, ax, by, bx, y, x, radius)
                     straightened = straightened + 1 if how == 0 else 0
                     if how == 0:
                         count = b
@@ -115,7 +115,7 @@ def pull_taut(blocked: Bytes, points: Points, radius: float, room: float) -> Poi
         line, pulled = pulled, line
         moved, fresh = fresh, moved
         if not changed:
-            count = leave_out(blocked, line, n, radius + room, moved)
+            count = leave_out(blocked, line, n, radius, moved)
             if count == n:
                 break
             n = count
@@ -156,7 +156,7 @@ def join_close(blocked: Bytes, points: Points, radius: float) -> Points:
 
 
 @njit(cache=True)
-def bevel(blocked: Bytes, points: Points, radius: float, largest: float, room: float) -> Points:
+def bevel(blocked: Bytes, points: Points, radius: float, largest: float) -> Points:
     """Cuts every corner once, up to ``largest`` cells from it, as far as the disc can follow."""
     result = np.empty((2 * len(points), 2))
     result[0] = points[0]
@@ -168,11 +168,9 @@ def bevel(blocked: Bytes, points: Points, radius: float, largest: float, room: f
         cut = min(largest, 0.4 * back_length, 0.4 * ahead_length)
         cosine = -(back[0] * ahead[0] + back[1] * ahead[1]) / max(back_length * ahead_length, 1e-12)
         done = cosine > STRAIGHT_ENOUGH
-        roomy = is_clear(blocked, corner[0], corner[1], corner[0], corner[1], radius + room)
-        need = radius + room if roomy else radius
         while not done and cut >= SMALLEST_CUT:
             a, b = corner + back * (cut / back_length), corner + ahead * (cut / ahead_length)
-            done = is_clear(blocked, a[0], a[1], b[0], b[1], need)
+            done = is_clear(blocked, a[0], a[1], b[0], b[1], radius)
             if done:
                 result[count], result[count + 1] = a, b
                 count += 2
@@ -185,20 +183,18 @@ def bevel(blocked: Bytes, points: Points, radius: float, largest: float, room: f
 
 
 @njit(cache=True)
-def smooth_kernel(
-    blocked: Bytes, points: Points, radius: float, rounding: float, room: float
-) -> Points:
+def smooth_kernel(blocked: Bytes, points: Points, radius: float, rounding: float) -> Points:
     """``smooth`` on arrays of one type; no points at all where some given are not finite."""
     length = polyline_length(points)
     if not math.isfinite(length):
         return np.empty((0, 2))
-    smoothed = pull_taut(blocked, points, radius, room)
+    smoothed = pull_taut(blocked, points, radius)
     joined = join_close(blocked, smoothed, radius)
     if polyline_length(joined) <= length:
         smoothed = joined
     if rounding > 0.0:
         for _ in range(BEVELS):
-            smoothed = bevel(blocked, smoothed, radius, rounding, room)
+            smoothed = bevel(blocked, smoothed, radius, rounding)
     return smoothed
 
 
@@ -207,26 +203,23 @@ def smooth(
     points: npt.ArrayLike,
     radius: float,
     rounding: float = 0.0,
-    room: float = 0.0,
 ) -> Points:
     """A shorter polyline from the first to the last of ``points`` that a disc can follow.
 
     ``blocked`` is [rows, columns]; ``points`` (n, 2) are (row, column) in fractions of cells;
-    ``radius``, the disc's, ``rounding``, how far from a corner its rounding may begin, and ``room``,
-    how much further than the radius it keeps from the corners that it goes round if it can, are in
+    ``radius``, the disc's, and ``rounding``, how far from a corner its rounding may begin, are in
     cells. The result is nowhere closer to a blocked cell than the radius if the polyline given is
     not, and never longer; see ``segment_clear`` for what counts. Raises ValueError for a point that
-    is not finite, and for a radius, rounding or room that is not, or is below 0.
+    is not finite, and for a radius or rounding that is not, or is below 0.
     """
     line = np.array(points, dtype=np.float64).reshape(-1, 2)
-    if not (0.0 <= radius < math.inf and 0.0 <= rounding < math.inf and 0.0 <= room < math.inf):
+    if not (0.0 <= radius < math.inf and 0.0 <= rounding < math.inf):
         raise ValueError(
-            f"radius, rounding and room are {radius}, {rounding} and {room}: "
-            "expected finite numbers of cells, 0 or more"
+            f"radius and rounding are {radius} and {rounding}: expected finite numbers of cells, 0 or more"
         )
     if len(line) < 3:
         return line
-    smoothed = smooth_kernel(mask_bytes(blocked), line, float(radius), float(rounding), float(room))
+    smoothed = smooth_kernel(mask_bytes(blocked), line, float(radius), float(rounding))
     if len(smoothed) == 0:
         bad = line[~np.isfinite(line).all(axis=1)][:1].tolist()
         raise ValueError(f"a polyline to smooth has the point {bad}: expected finite numbers")

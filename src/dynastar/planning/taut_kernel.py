@@ -173,26 +173,22 @@ def all_clear(
 @njit(cache=True)
 def pulled_bend(
     blocked: Bytes, ay: float, ax: float, by: float, bx: float, cy: float, cx: float,
-    radius: float, room: float,
+    radius: float,
 ) -> Bend:  # fmt: skip
     """What a pull makes of the bend at b: shorter, and clear for a disc that can go by b; see ``Bend``.
 
-    It keeps ``room`` more than the radius from the corners that it goes round, if there is so much.
     Where the taut string is caught by more than two corners, the bend is only cut, for the next pull
     to go on with. ``LEFT`` stands first where nothing gets shorter.
     """
     now = norm(by - ay, bx - ax) + norm(cy - by, cx - bx)
-    for more in (room, 0.0):
-        how, py, px, qy, qx = taut_bend(blocked, ay, ax, by, bx, cy, cx, radius + more)
-        if how == 0 and is_clear(blocked, ay, ax, cy, cx, radius):
+    how, py, px, qy, qx = taut_bend(blocked, ay, ax, by, bx, cy, cx, radius)
+    if how == 0 and is_clear(blocked, ay, ax, cy, cx, radius):
+        return how, py, px, qy, qx
+    if how > 0:
+        if by_two(ay, ax, py, px, qy, qx, cy, cx) > now - SHORTER:
+            return LEFT, 0.0, 0.0, 0.0, 0.0
+        if all_clear(blocked, ay, ax, py, px, qy, qx, cy, cx, radius):
             return how, py, px, qy, qx
-        if how > 0:
-            if by_two(ay, ax, py, px, qy, qx, cy, cx) > now - SHORTER:
-                return LEFT, 0.0, 0.0, 0.0, 0.0
-            if all_clear(blocked, ay, ax, py, px, qy, qx, cy, cx, radius):
-                return how, py, px, qy, qx
-        if room == 0.0:
-            break
     share = 0.5
     while how > 0 and share > 0.05:
         py, px = by + share * (ay - by), bx + share * (ax - bx)
