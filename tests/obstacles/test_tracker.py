@@ -244,6 +244,24 @@ def test_a_walker_beside_a_wall_of_the_map_is_found():
     assert (mover.vx, mover.vy) == pytest.approx((-0.5, 0.0), abs=0.1)
 
 
+@pytest.mark.parametrize("walks", [True, False])
+def test_a_walker_close_by_something_wide_that_no_map_shows_is_found(walks):
+    """Their points are one row, too wide to walk; somebody is where space was seen free before."""
+    layer, tracker, here = ObstacleLayer(), Tracker(), Pose2D(0.0, 0.0, 0.0)
+    layer.follow(0.0, 0.0)
+    for k in range(20):
+        ranges = ranges_to_face(2.0, 0.05, 1.7)
+        if walks and k > 8:
+            walker = ranges_to([(2.3 - 0.05 * (k - 8), -0.28, 0.3)], here)
+            ranges = np.minimum(ranges, walker)
+        look(ranges, here, NOTHING_KNOWN, layer, tracker, k / 10)
+    if walks:
+        (mover,) = tracker.movers
+        assert (mover.vx, mover.vy) == pytest.approx((-0.5, 0.0), abs=0.15)
+    else:
+        assert tracker.movers == ()
+
+
 def test_what_comes_into_view_is_new_until_it_is_known_to_walk_or_to_stand():
     def walker_and_post(t):
         return [(3.0, -1.0 + 0.5 * t, 0.3), (-3.0, 0.0, 0.3)]

@@ -21,6 +21,8 @@ UNSEEN = 0.35  # s without having been seen free, and something may be there
 HALF_SEEN = 0.3  # m, the radius of something that one end is hidden of, unless more is seen
 HIDDEN = (1.0, 1.5, 4.0)  # so much less sure is a centre with so many ends hidden
 TOP_KEPT = 0.97  # of a mover's top speed from scan to scan
+CRACK = 0.25  # of the gap between two things, at which what is too wide is taken apart
+PART_FRESH = 0.6  # of its points in space seen free before, or a part of it is none
 DISC_DEPTH = 0.25 * math.pi  # mean depth of a disc's visible half, in radii
 
 
@@ -47,6 +49,28 @@ def disc_at_end(points, start, stop, hidden, radius, half_step, sensor_x, sensor
 
 
 @njit(cache=True)
+def end_of(breaks, start, last):
+    """Where a group that begins at ``start`` ends; indices go on round the circle, up to ``last``."""
+    stop = start + 1
+    while stop < last and not breaks[stop % len(breaks)]:
+        stop += 1
+    return stop
+
+
+@njit(cache=True)
+def extent(points, start, stop):
+    """The diagonal (m) of the box round a group of points."""
+    n = len(points)
+    low_x = low_y = np.inf
+    high_x = high_y = -np.inf
+    for k in range(start, stop):
+        px, py = points[k % n, 0], points[k % n, 1]
+        low_x, high_x = min(low_x, px), max(high_x, px)
+        low_y, high_y = min(low_y, py), max(high_y, py)
+    return math.hypot(high_x - low_x, high_y - low_y)
+
+
+@njit(cache=True)
 def clusters(
     points,
     beams,
@@ -68,7 +92,9 @@ def clusters(
     """Groups neighbouring points into things that could move: (m, 7), see the columns above.
 
     A group breaks where neighbours lie further apart than ``gap`` plus twice the beams' spacing and
-    where what the map shows begins or ends; that is left out, and what is wider than ``widest``.
+    where what the map shows begins or ends; that is left out. What is wider than ``widest`` is taken
+    apart at smaller gaps, for somebody may walk close by something that stands, and left out but for
+    parts in space that was seen free.
     ``known_frame`` is (resolution, x, y, yaw) of the map whose widened obstacles ``known`` marks.
     """
     n = len(points)
@@ -84,38 +110,38 @@ def clusters(
         row = int(math.floor((cos * dy - sin * dx) / known_frame[0]))
         if 0 <= row < known.shape[0] and 0 <= column < known.shape[1]:
             mapped[i] = known[row, column]
-    breaks = np.zeros(n, np.bool_)  # a break before point i
+    breaks, cracks = np.zeros(n, np.bool_), np.zeros(n, np.bool_)  # before point i
     for i in range(n):
         j = i - 1 if i > 0 else n - 1
         dx, dy = points[i, 0] - points[j, 0], points[i, 1] - points[j, 1]
         r = math.hypot(points[i, 0] - sensor_x, points[i, 1] - sensor_y)
         skipped = (beams[i] - beams[j]) % n_beams
-        far = math.hypot(dx, dy) > gap + 2.0 * r * step or mapped[i] != mapped[j]
-        breaks[i] = far or skipped > 3 or (i == 0 and not full_circle)
+        apart = math.hypot(dx, dy) - 2.0 * r * step
+        other = mapped[i] != mapped[j] or skipped > 3 or (i == 0 and not full_circle)
+        breaks[i], cracks[i] = other or apart > gap, other or apart > CRACK * gap
     first = 0
     while first < n and not breaks[first]:
         first += 1
     if first == n:
         return found[:0]  # one group all round: walls
-    start = first
+    start = whole = first  # of the group, and where the one ends that is taken apart
     while start < first + n:
-        stop = start + 1
-        while stop < first + n and not breaks[stop % n]:
-            stop += 1
+        stop = end_of(breaks, start, first + n)
+        if start >= whole and extent(points, start, stop) > widest:
+            whole = stop
+        part = start < whole
+        if part:
+            stop = end_of(cracks, start, whole)
         count = stop - start
         a, b = start % n, (stop - 1) % n
         width = math.hypot(points[b, 0] - points[a, 0], points[b, 1] - points[a, 1])
-        if count >= 2 and width <= widest and not mapped[a]:
+        if count >= 2 and not mapped[a] and extent(points, start, stop) <= widest:
             cx = cy = 0.0
             fresh = 0
-            low_x = low_y = np.inf
-            high_x = high_y = -np.inf
             for k in range(start, stop):
                 px, py = points[k % n, 0], points[k % n, 1]
                 cx += px
                 cy += py
-                low_x, high_x = min(low_x, px), max(high_x, px)
-                low_y, high_y = min(low_y, py), max(high_y, py)
                 # A surface that stands may lie in a cell that beams pass; behind it none does.
                 depth = BEHIND * resolution / max(math.hypot(px - sensor_x, py - sensor_y), 1e-9)
                 row = int(math.floor((py + depth * (py - sensor_y) - y0) / resolution))
@@ -127,7 +153,7 @@ def clusters(
                 ):
                     fresh += 1
             cx, cy = cx / count, cy / count
-            if math.hypot(high_x - low_x, high_y - low_y) <= widest:
+            if not part or fresh >= PART_FRESH * count:
                 r = max(math.hypot(cx - sensor_x, cy - sensor_y), 1e-9)
                 radius = max(0.5 * (width + r * step), 0.05)
                 push = DISC_DEPTH * radius / r
@@ -145,7 +171,8 @@ def clusters(
                         points[beside, 0] - sensor_x, points[beside, 1] - sensor_y
                     )
                     end_r = math.hypot(points[end, 0] - sensor_x, points[end, 1] - sensor_y)
-                    nearer = beside_r < end_r + (gap if mapped[beside] else -gap)
+                    torn = part and not breaks[a if side > 0 else stop % n]
+                    nearer = beside_r < end_r + (gap if mapped[beside] or torn else -gap)
                     if min(skipped, n_beams - skipped) <= 3 and nearer:
                         found[m, C_CUT] += 1.0
                         one_end += side
