@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from dynastar.clearance import distance_field
 from dynastar.dwa import Margins, Surroundings, stop_kernels
 from dynastar.dwa.dwa import Body
-from dynastar.dwa.manoeuvre_kernels import LATE, STEP, along, drive, first_command, worth
+from dynastar.dwa.manoeuvre_kernels import LATE, STEP, along, aside, drive, first_command, worth
 from dynastar.dwa.passing import Scene
 from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import Limits, arc, slew
@@ -60,6 +60,7 @@ def driven(way, turns=KEEP, v=0.0, stoppable=False, path=PATH, seconds=SECONDS, 
         0.05,
         np.array(turns),
         stoppable,
+        kwargs.get("spread", 0.0),
         gaps,
         touched,
     )
@@ -234,3 +235,30 @@ def test_what_it_goes_on_with_can_be_stopped_for_what_stands_and_before_movers(s
         room.around, BODY, room.margins, 1.0, 0.0, (*HERE, 0.3, 0.0), v, 0.0, LIMITS, 0.1
     )
     assert code in (stop_kernels.ADMISSIBLE, stop_kernels.RUN_OVER)
+
+
+# -- out of the way --------------------------------------------------------------------------------
+
+
+def goes_aside(movers, way, v, limits, spread=0.1):
+    """The first speed of a way that is better than braking, or None."""
+    gaps, touched = np.empty(len(KEEP)), np.empty(len(KEEP))
+    ways, around = np.array([way], float), scene(movers, spread=spread, limits=limits)
+    found, v, _, _ = aside(
+        ways, 0.3, (*HERE, v, 0.0), PATH, SECONDS, around, np.array(KEEP), gaps, touched
+    )
+    return v if found >= 0 else None
+
+
+def test_who_would_be_run_over_where_it_stands_backs_on_though_it_could_not_stop_in_time():
+    """How near somebody comes is not sure, and that they come where the robot stands is."""
+    weak = REVERSING._replace(v_accel=0.2, v_brake=0.2)
+    across = [(5.45, 5.75, 0.0, -0.5, 0.3, 0.5)]  # 0.15 m into the robot, if it stands
+    back = straight(-0.5, 0.0, 4.0, 0.0)
+    _, _, gaps, _ = driven(back, v=-0.02, movers=across, limits=weak, spread=0.1)
+    assert gaps[0] < 0.0  # with all that they may stray
+    assert goes_aside(across, back, -0.02, weak) == pytest.approx(-0.04)
+    nearer = [(5.4, 5.6, 0.0, -0.5, 0.3, 0.5)]  # too near to get away from
+    assert goes_aside(nearer, back, -0.02, weak) is None
+    past = [(5.95, 5.75, 0.0, -0.5, 0.3, 0.5)]  # passes by who stands
+    assert goes_aside(past, back, -0.02, weak) is None

@@ -119,37 +119,39 @@ def test_who_has_just_come_into_view_may_come_onto_the_path_from_there():
     )  # too far away
 
 
-def touches_slowly(lane, v, change, top, reaction, speed, apart, seconds, path):
+def touches_slowly(lane, v, change, least, top, reaction, speed, apart, seconds, path):
     """Both ways in steps of a millisecond; also by how much they miss each other."""
-    s, least = 0.0, math.inf
+    s, gap = 0.0, math.inf
     for t in np.arange(0.001, seconds, 0.001):
         if t > reaction:
-            v = min(v + change * 0.001, top)
-        if v <= 0.0:
+            v = min(max(v + change * 0.001, least), top)
+        if v <= 0.0 and least == 0.0:
             break
         s += v * 0.001
         if s >= 0.1 * (len(path) - 1):
             break
         x, y = lane[0] + speed * t * lane[2], lane[1] + speed * t * lane[3]
-        least = min(least, math.hypot(path[int(s / 0.1), 0] - x, path[int(s / 0.1), 1] - y))
-    return least - apart
+        here = path[int(s / 0.1)] if s >= 0.0 else path[0] + s / 0.1 * (path[1] - path[0])
+        gap = min(gap, math.hypot(here[0] - x, here[1] - y))
+    return gap - apart
 
 
 @given(
     st.floats(0.1, 1.0),
     st.sampled_from([-0.2, 0.2]),
+    st.sampled_from([0.0, 0.5]),
     st.floats(0.5, 3.0),
     st.floats(0.5, 3.0),
     st.floats(0.0, math.tau),
 )
 @settings(max_examples=60, deadline=None)
-def test_who_touches_whom_is_as_in_small_steps(v, change, onto, away, angle):
+def test_who_touches_whom_is_as_in_small_steps(v, change, back, onto, away, angle):
     path = np.column_stack([0.1 * np.arange(60), np.zeros(60)])
     ux, uy = math.cos(angle), math.sin(angle)
     lane = np.array([onto - away * ux, -away * uy, ux, uy])
-    top = v if change < 0.0 else 0.8
-    exact = touches_slowly(lane, v, change, max(top, v), 0.4, 0.5, 0.75, 4.0, path)
-    found = touches(lane, path, 0.1, v, change, max(top, v), 0.4, 0.5, 0.75, 4.0)
+    least, top = (-back, v) if change < 0.0 else (v, max(0.8, v))
+    exact = touches_slowly(lane, v, change, least, top, 0.4, 0.5, 0.75, 4.0, path)
+    found = touches(lane, path, 0.1, v, change, least, top, 0.4, 0.5, 0.75, 4.0)
     assert found == (exact < 0.0) or abs(exact) < 0.2
 
 
@@ -157,7 +159,7 @@ def test_the_robot_goes_so_slowly_that_it_could_stop_or_so_fast_that_it_is_past(
     path = np.column_stack([0.1 * np.arange(60), np.zeros(60)])
     crossing = np.array([[1.5, 1.6, 0.0, -1.0]])
     speeds = np.arange(1.0, 0.3, -0.05)
-    rest = 0.1, 0.2, 0.8, 0.4, 0.5, 0.75, 4.0
+    rest = 0.1, 0.2, 0.0, 0.8, 0.4, 0.5, 0.75, 4.0
     chosen = careful(crossing, path, *rest[:1], speeds, 0.2, *rest[1:])
     assert 0.3 < chosen < 0.6
     assert careful(crossing[:0], path, *rest[:1], speeds, 0.2, *rest[1:]) == speeds[0]
@@ -169,12 +171,28 @@ def test_the_robot_goes_so_slowly_that_it_could_stop_or_so_fast_that_it_is_past(
 
 def test_who_would_be_at_the_robots_back_already_does_not_hold_it_up():
     path = np.column_stack([0.1 * np.arange(60), np.zeros(60)])
-    rest = 0.1, 0.2, 0.8, 0.4, 0.5, 0.75, 4.0
+    rest = 0.1, 0.2, 0.0, 0.8, 0.4, 0.5, 0.75, 4.0
     speeds = np.arange(0.8, 0.3, -0.05)
     behind = np.array([[-0.7, 0.0, 1.0, 0.0]])
     assert careful(behind, path, *rest[:1], speeds, 0.2, *rest[1:]) == speeds[0]
     ahead = np.array([[0.8, 0.0, -1.0, 0.0]])
     assert careful(ahead, path, *rest[:1], speeds, 0.2, *rest[1:]) == speeds[-1]
+
+
+def test_who_may_back_out_of_the_way_does_not_wait_in_it():
+    path = np.column_stack([0.1 * np.arange(60), np.zeros(60)])
+    crossing = np.array([[1.2, 1.8, 0.0, -1.0]])
+    speeds = np.arange(0.6, 0.04, -0.02)
+    stays, backs = (
+        careful(crossing, path, 0.1, speeds, 0.2, 0.2, back, 0.6, 0.4, 0.5, 0.75, 4.0)
+        for back in (0.0, 0.5)
+    )
+    assert (
+        backs < stays
+    )  # at rest it would be run over, which only who can do something about minds
+    stop = 0.4 * stays + stays**2 / 0.4
+    assert abs(1.2 - stop) < 0.75
+    assert not touches(crossing[0], path, 0.1, backs, -0.2, -0.5, backs, 0.4, 0.5, 0.75, 4.0)
 
 
 GRID = OccupancyGrid.from_text(

@@ -80,15 +80,15 @@ def nearest_mover(movers, after, turn, x, y):
 
 
 @njit(cache=True)
-def drive(way, state, path, seconds, scene, need, turns, stoppable, gaps, touched):
+def drive(way, state, path, seconds, scene, need, turns, stoppable, spread, gaps, touched):
     """Drives a way for ``seconds`` and stops; returns where it is then, and whether that can be.
 
     ``gaps`` (n,) get the smallest gap (m) to movers within that time if they turn back at each of
-    ``turns`` (n,), less the margins' spread for every second that it drives, and ``touched`` (n,) when
+    ``turns`` (n,), less ``spread`` (m/s) for every second that it drives, and ``touched`` (n,) when
     it falls to 0, inf if it does not. With ``stoppable`` the gap counts too that there would be after a
     stop from each moment. The robot may not come nearer than ``need`` (m) to what stands.
     """
-    _, _, around, body, margins, _, ahead, limits, _ = scene
+    _, _, around, body, _, _, ahead, limits, _ = scene
     _, _, a_v, a_w, b_v, b_w, _ = limits
     x, y, theta, v, omega = state
     gaps[:] = touched[:] = np.inf
@@ -120,7 +120,7 @@ def drive(way, state, path, seconds, scene, need, turns, stoppable, gaps, touche
             gap = nearest_mover(around.movers, ahead + t, turns[h], x, y)
             if stoppable:
                 gap = min(gap, nearest_mover(around.movers, ahead + t + stop, turns[h], px, py))
-            gap -= body.circumscribed + margins.spread * moved
+            gap -= body.circumscribed + spread * moved
             gaps[h] = min(gaps[h], gap)
             if gap <= 0.0:
                 touched[h] = min(touched[h], t)
@@ -164,7 +164,10 @@ def along(speeds, least_v, enough, state, path, seconds, scene, turns, gaps, tou
         v, omega, _, safe = first_command(way, state, path, scene)
         if not safe or v <= least_v:
             continue
-        _, _, can_be = drive(way, state, path, seconds, scene, need, turns, True, gaps, touched)
+        spread = scene.margins.spread
+        _, _, can_be = drive(
+            way, state, path, seconds, scene, need, turns, True, spread, gaps, touched
+        )
         if can_be and gaps.min() > enough:
             return True, v, omega
     return False, 0.0, 0.0
@@ -176,13 +179,15 @@ def aside(ways, enough, state, path, seconds, scene, turns, gaps, touched):
 
     That is ``worth`` over all ``turns`` that they may take. Of those that are even it is the one that
     ends nearest the path's end. Its first command has a certified stop for all that stands, and one
-    before movers too, unless none comes near on the way or braking ends in a touch. Returns its index
-    or -1 if none is better than braking, its first v and omega, and the least gap (m) of braking.
+    before movers too, unless none comes near on the way, or braking ends in a touch: at once, or where
+    the way, without its spread, has none. Returns its index or -1 if none is better than braking, its
+    first v and omega, and the least gap (m) of braking.
     """
     limits = scene.limits
     goal_x, goal_y = path[-1]
     need = min(scene.margins.standing, scene.allowed)
-    drive(np.zeros(6), state, path, seconds, scene, -1.0, turns, False, gaps, touched)
+    spread = scene.margins.spread
+    drive(np.zeros(6), state, path, seconds, scene, -1.0, turns, False, spread, gaps, touched)
     braked = gaps.min()
     best, nearest, found = worth(gaps, touched, enough, seconds), np.inf, -1
     best_v = best_w = 0.0
@@ -192,7 +197,7 @@ def aside(ways, enough, state, path, seconds, scene, turns, gaps, touched):
     doomed = touched.min() <= stop + STEP
     for i in range(len(ways)):
         end_x, end_y, can_be = drive(
-            ways[i], state, path, seconds, scene, need, turns, False, gaps, touched
+            ways[i], state, path, seconds, scene, need, turns, False, spread, gaps, touched
         )
         gap = worth(gaps, touched, enough, seconds)
         left = math.hypot(goal_x - end_x, goal_y - end_y)
@@ -201,6 +206,9 @@ def aside(ways, enough, state, path, seconds, scene, turns, gaps, touched):
             continue
         clear = doomed or gaps.min() > 0.0
         v, omega, standing, moving = first_command(ways[i], state, path, scene)
+        if standing and not moving and not clear and braked <= 0.0:
+            drive(ways[i], state, path, seconds, scene, need, turns, False, 0.0, gaps, touched)
+            clear = gaps.min() > 0.0
         if standing and (moving or clear):
             best, nearest, found = max(gap, best), left, i
             best_v, best_w = v, omega

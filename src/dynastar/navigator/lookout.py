@@ -23,7 +23,7 @@ NEAR = 3.0  # m from the path, beyond which there is time enough
 REACTION = 0.4  # s until they are known to move
 LOOK = 4.0  # s of driving on
 CANDIDATES = 7  # speeds
-SLOW = 0.3  # m/s, slower than which the robot goes for nobody that it does not see
+SLOW = 0.15  # m/s, slower than which the robot goes for nobody that it does not see
 
 
 class View(NamedTuple):
@@ -62,8 +62,9 @@ class Lookout:
     ) -> float:
         """The speed (m/s) to go at, near the present ``v`` and up to ``top``, ``s`` metres along a path.
 
-        From it the robot can stop before whoever comes straight out of hiding, or go on and be past;
-        so it can for who has just come into view and may be walking or not. Nobody comes through what
+        From it the robot can stop before whoever comes straight out of hiding, and back out of their
+        way if it can back, or go on and be past; so it can for who has just come into view and may be
+        walking or not. Nobody comes through what
         is known to move, which the window deals with;
         if there is no such speed near ``v`` it is the lowest, but never less than ``SLOW``.
         """
@@ -96,6 +97,7 @@ class Lookout:
                 speeds,
                 accel,
                 self.limits.v_brake,
+                -min(self.limits.v_min, 0.0),
                 top,
                 self.reaction,
                 self.pace,

@@ -106,34 +106,40 @@ def lanes_of(newcomers, path, view, radius, farthest):
 
 
 @njit(cache=True)
-def touches(lane, path, spacing, v, change, top, reaction, speed, apart, seconds):
+def touches(lane, path, spacing, v, change, least, top, reaction, speed, apart, seconds):
     """Whether who comes down a lane touches a robot that drives along a path from ``v`` (m/s).
 
-    After the ``reaction`` (s) that changes by ``change`` (m/s2), up to ``top`` or down to rest, which
-    ends it. They touch when their centres are less than ``apart`` (m) from each other.
+    After the ``reaction`` (s) that changes by ``change`` (m/s2), up to ``top`` or down to ``least``;
+    below 0 the robot backs, straight. If it may not, rest ends it. They touch when their centres are
+    less than ``apart`` (m) from each other.
     """
     x, y, ux, uy = lane
+    back_x, back_y = path[0, 0] - path[1, 0], path[0, 1] - path[1, 1]
     s = t = 0.0
     while t < seconds:
         t += STEP
         if t > reaction:
-            v = min(v + change * STEP, top)
-            if v <= 0.0:
+            v = min(max(v + change * STEP, least), top)
+            if v == least == 0.0:
                 return False
         s += v * STEP
         i = int(s / spacing)
         if i >= len(path):
             return False
-        dx, dy = path[i, 0] - x - speed * t * ux, path[i, 1] - y - speed * t * uy
+        px, py = path[max(i, 0)]
+        if s < 0.0:
+            px, py = px - s / spacing * back_x, py - s / spacing * back_y
+        dx, dy = px - x - speed * t * ux, py - y - speed * t * uy
         if dx * dx + dy * dy < apart * apart:
             return True
     return False
 
 
 @njit(cache=True)
-def careful(found, path, spacing, speeds, accel, brake, top, reaction, speed, apart, seconds):
+def careful(found, path, spacing, speeds, accel, brake, back, top, reaction, speed, apart, seconds):
     """The first of ``speeds`` from which the robot could stop or go on, whoever comes; or the last.
 
+    Where it may back, at up to ``back`` (m/s), it stops in time if it can also back out of their way.
     Who would be nearer than ``apart`` (m) already, behind a robot that does not see there, say, is so
     at any speed and is left out.
     """
@@ -143,8 +149,8 @@ def careful(found, path, spacing, speeds, accel, brake, top, reaction, speed, ap
             if math.hypot(found[k, 0] - path[0, 0], found[k, 1] - path[0, 1]) < apart:
                 continue
             how = reaction, speed, apart, seconds
-            if touches(found[k], path, spacing, v, -brake, v, *how) and touches(
-                found[k], path, spacing, v, accel, max(top, v), *how
+            if touches(found[k], path, spacing, v, -brake, -back, v, *how) and touches(
+                found[k], path, spacing, v, accel, v, max(top, v), *how
             ):
                 fine = False
                 break
