@@ -13,6 +13,7 @@ GENTLE = 0.8  # share of the braking that stopping where a way leads may use
 PURSUED = 3  # points of the path ahead that are steered at
 SURE = 1.5  # s of driving over which it gets less sure how near movers come
 LATE = 0.1  # m of gap that a second is worth by which a touch is put off
+HALF = 0.5  # of how deep a touch at rest would be, up to which backing is better
 EVEN = 0.02  # m, gaps that differ by less are even
 
 
@@ -179,15 +180,18 @@ def aside(ways, enough, state, path, seconds, scene, turns, gaps, touched):
 
     That is ``worth`` over all ``turns`` that they may take. Of those that are even it is the one that
     ends nearest the path's end. Its first command has a certified stop for all that stands, and one
-    before movers too, unless none comes near on the way, or braking ends in a touch: at once, or where
-    the way, without its spread, has none. Returns its index or -1 if none is better than braking, its
-    first v and omega, and the least gap (m) of braking.
+    before movers too, unless none comes near on the way or braking ends in a touch at once. Where it
+    ends in one for all that can be told, backing counts as no less sure, and is as good as clear if
+    that is half as deep. Returns the way's index or -1 if none is better than braking, its first v and
+    omega, and the least gap (m) of braking.
     """
     limits = scene.limits
     goal_x, goal_y = path[-1]
     need = min(scene.margins.standing, scene.allowed)
-    spread = scene.margins.spread
-    drive(np.zeros(6), state, path, seconds, scene, -1.0, turns, False, spread, gaps, touched)
+    brake, spread = np.zeros(6), scene.margins.spread
+    drive(brake, state, path, seconds, scene, -1.0, turns, False, 0.0, gaps, touched)
+    depth = gaps.min()  # negative where a touch is sure, as far as that can be told
+    drive(brake, state, path, seconds, scene, -1.0, turns, False, spread, gaps, touched)
     braked = gaps.min()
     best, nearest, found = worth(gaps, touched, enough, seconds), np.inf, -1
     best_v = best_w = 0.0
@@ -196,19 +200,18 @@ def aside(ways, enough, state, path, seconds, scene, turns, gaps, touched):
     stop = max(abs(state[3]) / limits.v_brake, abs(state[4]) / limits.omega_brake)
     doomed = touched.min() <= stop + STEP
     for i in range(len(ways)):
+        backs = depth < 0.0 and ways[i, 0] < 0.0
+        strays = 0.0 if backs else spread
         end_x, end_y, can_be = drive(
-            ways[i], state, path, seconds, scene, need, turns, False, spread, gaps, touched
+            ways[i], state, path, seconds, scene, need, turns, False, strays, gaps, touched
         )
         gap = worth(gaps, touched, enough, seconds)
         left = math.hypot(goal_x - end_x, goal_y - end_y)
         better = gap > best + EVEN or (found >= 0 and gap > best - EVEN and left < nearest)
         if not can_be or not better:
             continue
-        clear = doomed or gaps.min() > 0.0
+        clear = doomed or gaps.min() > (HALF * depth if backs else 0.0)
         v, omega, standing, moving = first_command(ways[i], state, path, scene)
-        if standing and not moving and not clear and braked <= 0.0:
-            drive(ways[i], state, path, seconds, scene, need, turns, False, 0.0, gaps, touched)
-            clear = gaps.min() > 0.0
         if standing and (moving or clear):
             best, nearest, found = max(gap, best), left, i
             best_v, best_w = v, omega

@@ -23,7 +23,7 @@ NEAR = 3.0  # m from the path, beyond which there is time enough
 REACTION = 0.4  # s until they are known to move
 LOOK = 4.0  # s of driving on
 CANDIDATES = 7  # speeds
-SLOW = 0.15  # m/s, slower than which the robot goes for nobody that it does not see
+SLOW = 0.2  # m/s, slower than which the robot goes for nobody that it does not see
 
 
 class View(NamedTuple):
