@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from dynastar.bench import ablation, table1, table1_tables, table3, terms
+from dynastar.bench import ablation, table1, table1_tables, table3, targets, terms
 from dynastar.bench.table1 import LARGE
 
 ROOT = Path(__file__).parent.parent
@@ -45,8 +45,19 @@ def test_every_table_of_the_experiments_has_its_place_on_the_page():
     made = table1_tables.tables([{**row, "kind": "random"}], row, [row])
     assert f"table1-{LARGE}" in {table.name for table in made}
     assert {table.name for table in made} < names
-    assert names == {table.name for table in made} | {"table3-own", "table3", "ablation", "terms"}
-    for module, name in ((table3, "table3"), (ablation, "ablation"), (terms, "terms")):
+    assert names == {table.name for table in made} | {
+        "table3-own",
+        "table3",
+        "ablation",
+        "terms",
+        "targets",
+    }
+    for module, name in (
+        (table3, "table3"),
+        (ablation, "ablation"),
+        (terms, "terms"),
+        (targets, "targets"),
+    ):
         assert f'"{name}"' in Path(module.__file__).read_text(encoding="utf-8")
 
 

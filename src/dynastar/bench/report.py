@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from matplotlib.figure import Figure
 
-from dynastar.bench import ablation, table1, table1_tables, table3, terms
+from dynastar.bench import ablation, table1, table1_tables, table3, targets, terms
 from dynastar.bench.families import KINDS
 from dynastar.bench.figures import SUFFIXES, draw_all
 from dynastar.bench.tables import Table, as_markdown
@@ -136,6 +136,17 @@ def report_figures(asked: Asked) -> Report:
     asked.folder.mkdir(parents=True, exist_ok=True)
     files = draw_all(asked.folder, asked.progress)
     return Report("figures", {"figures": [file.name for file in files]})
+
+
+def report_targets(found: Mapping[str, Any]) -> Report:
+    """What the other reports found, beside what it should be."""
+    table = targets.table(found)
+    names = "target", "at_most", "measured", "outcome"
+    return Report(
+        "targets",
+        {"targets": [dict(zip(names, row, strict=True)) for row in table.rows]},
+        [table],
+    )
 
 
 REPORTS: dict[str, Callable[[Asked], Report]] = {

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from dynastar.bench.report import REPORTS, Asked, write
+from dynastar.bench.report import REPORTS, Asked, Report, report_targets, write
 from dynastar.bench.tables import Table, as_markdown, as_text, fill
 from dynastar.cli.show import as_json
 from dynastar.errors import InputError
@@ -33,8 +33,8 @@ def execute(arguments: argparse.Namespace) -> int:
     )
     names = list(REPORTS) if arguments.what == "all" else [arguments.what]
     result: dict[str, Any] = {"seed": asked.seed, "maps": asked.maps}
-    for name in names:
-        report = REPORTS[name](asked)
+
+    def give(report: Report) -> None:
         write(report, asked.folder)
         result.update(report.found)
         if arguments.docs is not None:
@@ -42,6 +42,11 @@ def execute(arguments: argparse.Namespace) -> int:
         if arguments.json_out != "-":
             for table in report.tables:
                 print(as_text(table), end="\n\n", flush=True)
+
+    for name in names:
+        give(REPORTS[name](asked))
+    if arguments.what == "all":
+        give(report_targets(result))
     if to_file:
         write_json(arguments.json_out, result)
     if arguments.json_out == "-":
