@@ -1,8 +1,8 @@
 """The paper's worlds with up to three walkers each: ``python benchmarks/three_walkers.py [N] [SEED]``.
 
 Of N worlds (default 100) of a seed (default 7, which no table uses): how many robots arrive, how many
-are touched, how long they take. With one walker a robot in a hundred is touched, which 500 worlds do
-not tell from one in two hundred; with three walkers four times as many are.
+are touched, how long they take. With one walker so few are that hundreds of worlds do not tell one rule
+from another.
 """
 
 import dataclasses

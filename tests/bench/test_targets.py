@@ -2,21 +2,13 @@ import pytest
 
 from dynastar.bench import targets
 from dynastar.bench.report import report_targets
+from dynastar.bench.table1 import RATIOS
 from dynastar.bench.tables import as_markdown
 
 
 def found(value, arrived=99, moving=0):
     figures = dict.fromkeys(("median", "mean", "p95", "worst"), value)
-    ratios = dict.fromkeys(
-        (
-            "expanded_ratio",
-            "expanded_ratio_octile",
-            "length_ratio",
-            "any_angle_ratio",
-            "fast_ratio",
-        ),
-        figures,
-    ) | {"total_time_ratio": figures}
+    ratios = dict.fromkeys(RATIOS, figures)
     kinds = {"all": ratios, "random": ratios}
     of_worlds = {"missions": 100, "arrived": arrived, "contacts_moving": moving}
     hybrid = {"length_ratio": figures, "turning_ratio": figures} if arrived else {}

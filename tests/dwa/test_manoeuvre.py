@@ -258,6 +258,8 @@ def test_who_would_be_run_over_where_it_stands_backs_on_though_it_could_not_stop
     _, _, gaps, _ = driven(back, v=-0.02, movers=across, limits=weak, spread=0.1)
     assert gaps[0] < 0.0  # with all that they may stray
     assert goes_aside(across, back, -0.02, weak) == pytest.approx(-0.04)
+    nearer = [(5.4, 5.6, 0.0, -0.5, 0.3, 0.5)]  # a touch either way, if less of one
+    assert goes_aside(nearer, back, -0.02, weak) == pytest.approx(-0.04)
     assert goes_aside(across, straight(0.0, 0.5, 4.0, 0.0), 0.0, weak) is None  # saves nobody
     past = [(5.95, 5.75, 0.0, -0.5, 0.3, 0.5)]  # passes by who stands
     assert goes_aside(past, back, -0.02, weak) is None

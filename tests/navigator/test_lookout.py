@@ -187,9 +187,7 @@ def test_who_may_back_out_of_the_way_does_not_wait_in_it():
         careful(crossing, path, 0.1, speeds, 0.2, 0.2, back, 0.6, 0.4, 0.5, 0.75, 4.0)
         for back in (0.0, 0.5)
     )
-    assert (
-        backs < stays
-    )  # at rest it would be run over, which only who can do something about minds
+    assert backs < stays  # where it would rest it would be run over
     stop = 0.4 * stays + stays**2 / 0.4
     assert abs(1.2 - stop) < 0.75
     assert not touches(crossing[0], path, 0.1, backs, -0.2, -0.5, backs, 0.4, 0.5, 0.75, 4.0)
@@ -200,7 +198,7 @@ GRID = OccupancyGrid.from_text(
 )
 
 
-def speed_at_a_corner(v, config=NavigatorConfig()):
+def speed_at_a_corner(v, config=NavigatorConfig(), robot=ROBOT):
     """Along the lower half of a map whose upper half was never seen, right of a wall."""
     layer, chart = ObstacleLayer(), Chart(GRID, config, 0.4, 0.4)
     layer.follow(3.0, 1.5)
@@ -211,7 +209,7 @@ def speed_at_a_corner(v, config=NavigatorConfig()):
     layer.free_at[seen] = NOW
     layer.update(NOW)
     path = Path(np.array([(3.5, 1.8), (9.5, 1.8)]))
-    return Lookout(ROBOT, config).speed(NOW, v, 1.0, path, 0.0, layer, chart, Tracker())
+    return Lookout(robot, config).speed(NOW, v, 1.0, path, 0.0, layer, chart, Tracker())
 
 
 def test_a_robot_slows_down_where_the_map_leaves_room_to_come_out_of():
@@ -219,6 +217,19 @@ def test_a_robot_slows_down_where_the_map_leaves_room_to_come_out_of():
     assert speed_at_a_corner(SLOW) >= SLOW
     assert speed_at_a_corner(0.0) >= SLOW
     assert speed_at_a_corner(0.8, NavigatorConfig(hidden_speed=0.0)) == 1.0
+
+
+def test_who_can_back_looks_out_for_where_it_would_stand():
+    ahead, both = (
+        replace(ROBOT, limits=ROBOT.limits._replace(v_accel=0.2, v_brake=0.2, v_min=v_min))
+        for v_min in (0.0, -0.5)
+    )
+    speeds = np.arange(0.1, 1.0, 0.05)
+    of_ahead, of_both = (
+        np.array([speed_at_a_corner(v, robot=robot) for v in speeds]) for robot in (ahead, both)
+    )
+    assert (of_both <= of_ahead).all()
+    assert (of_both < of_ahead).any()
 
 
 def test_a_longer_latency_is_a_longer_reaction():

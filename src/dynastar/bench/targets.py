@@ -51,11 +51,7 @@ TARGETS = (
         _table1("all", "total_time_ratio", "median", f"table1_{LARGE}"),
     ),
     Target("touched while moving", 0.0, lambda found: float(found["table3"]["contacts_moving"])),
-    Target(
-        "share that did not arrive",
-        0.01,
-        _lost,
-    ),
+    Target("share that did not arrive", 0.01, _lost),
     Target("hybrid: length, median", 0.93, _table3("length_ratio", "median")),
     Target("hybrid: turning points, median", 0.57, _table3("turning_ratio", "median")),
 )

@@ -64,9 +64,8 @@ class Lookout:
 
         From it the robot can stop before whoever comes straight out of hiding, and back out of their
         way if it can back, or go on and be past; so it can for who has just come into view and may be
-        walking or not. Nobody comes through what
-        is known to move, which the window deals with;
-        if there is no such speed near ``v`` it is the lowest, but never less than ``SLOW``.
+        walking or not. Nobody comes through what is known to move, which the window deals with. If
+        there is no such speed near ``v`` it is the lowest, but never less than ``SLOW``.
         """
         if self.pace == 0.0:
             return top

@@ -172,9 +172,8 @@ def all_clear(
 
 @njit(cache=True)
 def pulled_bend(
-    blocked: Bytes, ay: float, ax: float, by: float, bx: float, cy: float, cx: float,
-    radius: float,
-) -> Bend:  # fmt: skip
+    blocked: Bytes, ay: float, ax: float, by: float, bx: float, cy: float, cx: float, radius: float
+) -> Bend:
     """What a pull makes of the bend at b: shorter, and clear for a disc that can go by b; see ``Bend``.
 
     Where the taut string is caught by more than two corners, the bend is only cut, for the next pull
