@@ -1,6 +1,7 @@
 """Ways past movers: how they are driven, and how near movers come on them."""
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
@@ -154,6 +155,15 @@ def test_turning_back_counts_from_when_they_turn_and_at_their_top_speed():
     assert gaps[2] == pytest.approx(0.4)  # 2 m further at 4 s, and back by 6 s
 
 
+def test_who_does_not_turn_back_goes_on_as_now_or_at_its_top_speed():
+    hastening = [(5.0, 9.0, 0.0, -0.1, 0.3, 0.6)]  # comes 0.6 m or 3.6 m in six seconds
+    _, _, gaps, times = driven(STAND, (math.inf, 3.0), movers=hastening)
+    assert times[0] == pytest.approx(5.7, abs=STEP)
+    assert gaps[1] == pytest.approx(4.0 - 0.3 - 0.6)
+    slowing = [(5.0, 5.9, 0.0, -0.1, 0.3, 9.0)]  # at its top speed past at once
+    assert driven(STAND, movers=slowing)[3] == pytest.approx([3.0], abs=1.5 * STEP)
+
+
 def test_a_way_that_could_not_be_stopped_on_is_told_from_one_that_could():
     """Across before the mover comes, but were it to stop there the mover would come."""
     across = [(6.2, 7.6, 0.0, -0.8, 0.3, 0.8)]
@@ -258,8 +268,18 @@ def test_who_would_be_run_over_where_it_stands_backs_on_though_it_could_not_stop
     _, _, gaps, _ = driven(back, v=-0.02, movers=across, limits=weak, spread=0.1)
     assert gaps[0] < 0.0  # with all that they may stray
     assert goes_aside(across, back, -0.02, weak) == pytest.approx(-0.04)
-    nearer = [(5.4, 5.6, 0.0, -0.5, 0.3, 0.5)]  # a touch either way, if less of one
-    assert goes_aside(nearer, back, -0.02, weak) == pytest.approx(-0.04)
+    deeper = [(5.2, 6.2, 0.0, -0.5, 0.3, 0.5)]  # a touch either way, if less of one and later
+    assert goes_aside(deeper, back, -0.02, weak) == pytest.approx(-0.04)
     assert goes_aside(across, straight(0.0, 0.5, 4.0, 0.0), 0.0, weak) is None  # saves nobody
     past = [(5.95, 5.75, 0.0, -0.5, 0.3, 0.5)]  # passes by who stands
     assert goes_aside(past, back, -0.02, weak) is None
+
+
+def test_who_will_be_touched_whatever_it_does_is_at_rest_by_then():
+    weak = REVERSING._replace(v_accel=0.2, v_brake=0.2)
+    at_once = [(5.2, 5.6, 0.0, -0.5, 0.3, 0.5)]
+    back = straight(-0.5, 0.0, 4.0, 0.0)
+    for v, way in product((0.0, -0.02), (back, to(4.0, 5.0), straight(0.0, 1.0, 2.0, 0.0))):
+        assert driven(way, v=v, movers=at_once, limits=weak)[3] == pytest.approx([STEP])
+        assert goes_aside(at_once, way, v, weak) is None
+    assert goes_aside(at_once, back, -0.1, weak) == pytest.approx(-0.12)  # at rest it cannot be

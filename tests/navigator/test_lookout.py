@@ -119,78 +119,108 @@ def test_who_has_just_come_into_view_may_come_onto_the_path_from_there():
     )  # too far away
 
 
-def touches_slowly(lane, v, change, least, top, reaction, speed, apart, seconds, path):
-    """Both ways in steps of a millisecond; also by how much they miss each other."""
+AHEAD = np.column_stack([0.1 * np.arange(60), np.zeros(60)])
+RATES, REACTION = (0.2, 0.2), 0.4
+WHO = (REACTION, 0.0, 0.5, 0.75, 4.0)  # comes at 0.5 m/s
+
+
+def touches_slowly(lane, v, aim, last, reaction, tail, speed, apart, seconds):
+    """The same in steps of a millisecond and for many behind each other; by how much they miss."""
     s, gap = 0.0, math.inf
     for t in np.arange(0.001, seconds, 0.001):
-        if t > reaction:
-            v = min(max(v + change * 0.001, least), top)
-        if v <= 0.0 and least == 0.0:
+        to = aim if t <= reaction else last
+        v += min(max(to - v, -RATES[0] * 0.001), RATES[1] * 0.001)
+        if v == last == 0.0:
             break
         s += v * 0.001
-        if s >= 0.1 * (len(path) - 1):
+        if s >= 0.1 * (len(AHEAD) - 1):
             break
-        x, y = lane[0] + speed * t * lane[2], lane[1] + speed * t * lane[3]
-        here = path[int(s / 0.1)] if s >= 0.0 else path[0] + s / 0.1 * (path[1] - path[0])
-        gap = min(gap, math.hypot(here[0] - x, here[1] - y))
+        for back in np.linspace(0.0, tail, 20):
+            on = speed * t - back
+            gap = min(gap, math.hypot(s - lane[0] - on * lane[2], lane[1] + on * lane[3]))
     return gap - apart
 
 
 @given(
     st.floats(0.1, 1.0),
-    st.sampled_from([-0.2, 0.2]),
-    st.sampled_from([0.0, 0.5]),
+    st.floats(-0.2, 0.2),
+    st.sampled_from([-0.5, 0.0, 0.8]),
     st.floats(0.5, 3.0),
     st.floats(0.5, 3.0),
     st.floats(0.0, math.tau),
+    st.sampled_from([0.0, 1.2]),
 )
 @settings(max_examples=60, deadline=None)
-def test_who_touches_whom_is_as_in_small_steps(v, change, back, onto, away, angle):
-    path = np.column_stack([0.1 * np.arange(60), np.zeros(60)])
+def test_who_touches_whom_is_as_in_small_steps(v, more, last, onto, away, angle, tail):
     ux, uy = math.cos(angle), math.sin(angle)
     lane = np.array([onto - away * ux, -away * uy, ux, uy])
-    least, top = (-back, v) if change < 0.0 else (v, max(0.8, v))
-    exact = touches_slowly(lane, v, change, least, top, 0.4, 0.5, 0.75, 4.0, path)
-    found = touches(lane, path, 0.1, v, change, least, top, 0.4, 0.5, 0.75, 4.0)
-    assert found == (exact < 0.0) or abs(exact) < 0.2
+    aim = max(v + more, 0.05)
+    last = max(last, aim) if last > 0.0 else last
+    who = (REACTION, tail, *WHO[2:])
+    exact = touches_slowly(lane, v, aim, last, *who)
+    found = touches(lane, AHEAD, 0.1, v, aim, last, RATES, *who)
+    assert found == (exact < 0.0) or abs(exact) < 0.1
+
+
+def choice(lane, v, speeds, back=0.0, top=0.8):
+    return careful(np.array(lane), AHEAD, 0.1, v, np.array(speeds), RATES, back, top, *WHO)
+
+
+def can_be(lane, v, back=0.0, top=0.8):
+    """Whether the robot can go on at ``v`` and stop in time, or be past."""
+    return choice(lane, v, [v, 9.0], back, top) == v
+
+
+CROSSING = [[1.5, 1.6, 0.0, -1.0]]  # comes within 0.75 m of the path after 1.7 s
 
 
 def test_the_robot_goes_so_slowly_that_it_could_stop_or_so_fast_that_it_is_past():
-    path = np.column_stack([0.1 * np.arange(60), np.zeros(60)])
-    crossing = np.array([[1.5, 1.6, 0.0, -1.0]])
-    speeds = np.arange(1.0, 0.3, -0.05)
-    rest = 0.1, 0.2, 0.0, 0.8, 0.4, 0.5, 0.75, 4.0
-    chosen = careful(crossing, path, *rest[:1], speeds, 0.2, *rest[1:])
-    assert 0.3 < chosen < 0.6
-    assert careful(crossing[:0], path, *rest[:1], speeds, 0.2, *rest[1:]) == speeds[0]
-    far = crossing + [0.0, 6.0, 0.0, 0.0]
-    assert careful(far, path, *rest[:1], speeds, 0.2, *rest[1:]) == speeds[0]
-    near = np.array([[0.5, 0.8, 0.0, -1.0]])
-    assert careful(near, path, *rest[:1], speeds, 0.2, *rest[1:]) == speeds[-1]
+    assert can_be(CROSSING, 0.4)
+    assert not can_be(CROSSING, 0.5)  # stops after 0.2 + 0.625 m
+    assert not can_be(CROSSING, 0.8)
+    assert can_be(CROSSING, 1.6)
+    assert can_be([[1.5, 7.6, 0.0, -1.0]], 0.5)  # far away
+    assert can_be(np.empty((0, 4)), 0.5)
+
+
+def test_a_speed_counts_from_when_the_robot_can_have_it():
+    """At 0.2 m/s2, from 0.5 m/s it has 0.42 m/s at the soonest after the reaction."""
+    assert 0.4 < choice(CROSSING, 0.5, np.arange(0.6, 0.3, -0.01)) < 0.48
+    assert choice(CROSSING, 0.6, np.arange(0.7, 0.3, -0.01)) == pytest.approx(0.31)  # too fast
+    assert choice(CROSSING, 0.4, [1.6, 0.4]) == 0.4  # would be past if it were so fast already
+
+
+def test_who_cannot_be_avoided_at_one_speed_is_not_forgotten_at_the_next():
+    both = [[1.5, 8.0, 0.0, -1.0], *CROSSING, [0.5, 0.8, 0.0, -1.0]]
+    assert choice(both[:2], 0.5, [0.5, 0.45, 0.3]) == choice(CROSSING, 0.5, [0.5, 0.45, 0.3])
+    assert choice(both, 0.5, [0.5, 0.3, 0.1]) == 0.1  # the last of them, at any speed
+
+
+def test_who_comes_a_little_later_counts_as_well():
+    """The first would be past before the robot is there, and those behind them come as it is."""
+    lane = np.array([1.7, 0.9, 0.0, -1.0])
+    first, all_of_them = (
+        touches(lane, AHEAD, 0.1, 0.6, 0.6, 0.0, RATES, REACTION, tail, 0.8, 0.75, 6.0)
+        for tail in (0.0, 1.2)
+    )
+    assert not first
+    assert all_of_them
 
 
 def test_who_would_be_at_the_robots_back_already_does_not_hold_it_up():
-    path = np.column_stack([0.1 * np.arange(60), np.zeros(60)])
-    rest = 0.1, 0.2, 0.0, 0.8, 0.4, 0.5, 0.75, 4.0
-    speeds = np.arange(0.8, 0.3, -0.05)
-    behind = np.array([[-0.7, 0.0, 1.0, 0.0]])
-    assert careful(behind, path, *rest[:1], speeds, 0.2, *rest[1:]) == speeds[0]
-    ahead = np.array([[0.8, 0.0, -1.0, 0.0]])
-    assert careful(ahead, path, *rest[:1], speeds, 0.2, *rest[1:]) == speeds[-1]
+    assert can_be([[-0.7, 0.0, 1.0, 0.0]], 0.6)
+    assert not can_be([[0.8, 0.0, -1.0, 0.0]], 0.6)
 
 
 def test_who_may_back_out_of_the_way_does_not_wait_in_it():
-    path = np.column_stack([0.1 * np.arange(60), np.zeros(60)])
-    crossing = np.array([[1.2, 1.8, 0.0, -1.0]])
-    speeds = np.arange(0.6, 0.04, -0.02)
+    late = [[1.2, 1.8, 0.0, -1.0]]
     stays, backs = (
-        careful(crossing, path, 0.1, speeds, 0.2, 0.2, back, 0.6, 0.4, 0.5, 0.75, 4.0)
+        max(v for v in np.arange(0.04, 0.6, 0.02) if can_be(late, v, back, top=0.0))
         for back in (0.0, 0.5)
     )
     assert backs < stays  # where it would rest it would be run over
-    stop = 0.4 * stays + stays**2 / 0.4
-    assert abs(1.2 - stop) < 0.75
-    assert not touches(crossing[0], path, 0.1, backs, -0.2, -0.5, backs, 0.4, 0.5, 0.75, 4.0)
+    assert abs(1.2 - REACTION * stays - stays**2 / 0.4) < 0.75
+    assert not touches(np.array(late[0]), AHEAD, 0.1, backs, backs, -0.5, RATES, *WHO)
 
 
 GRID = OccupancyGrid.from_text(
@@ -230,6 +260,36 @@ def test_who_can_back_looks_out_for_where_it_would_stand():
     )
     assert (of_both <= of_ahead).all()
     assert (of_both < of_ahead).any()
+
+
+class Seen:
+    """A tracker with newcomers (n, 3): x, y, radius, and nobody who walks."""
+
+    def __init__(self, *discs):
+        self.discs = np.array(discs, float).reshape(-1, 3)
+
+    def newcomers(self):
+        return self.discs
+
+    def in_sight(self):
+        return self.discs[:0]
+
+
+def test_for_who_is_in_sight_the_robot_goes_as_slowly_as_it_takes():
+    config, slow = NavigatorConfig(), replace(ROBOT, limits=ROBOT.limits._replace(v_accel=0.2))
+    layer, chart = ObstacleLayer(), Chart(GRID, config, 0.4, 0.4)
+    layer.follow(3.0, 1.5)
+    layer.free_at[:] = NOW
+    layer.update(NOW)
+    path = Path(np.array([(3.5, 1.8), (9.5, 1.8)]))
+    look = Lookout(slow, config)
+
+    def speed(tracker):
+        return look.speed(NOW, SLOW, 1.0, path, 0.0, layer, chart, tracker)
+
+    assert speed(Seen()) > SLOW
+    assert speed(Seen((4.6, 1.8, 0.25))) < SLOW  # would come towards it
+    assert speed(Seen((9.0, 1.8, 0.25))) > SLOW
 
 
 def test_a_longer_latency_is_a_longer_reaction():

@@ -2,6 +2,8 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from dynastar.clearance import inflate
 from dynastar.geometry import Pose2D
@@ -64,6 +66,28 @@ def test_a_walker_is_found_with_its_velocity(speed):
     assert (mover.x, mover.y) == pytest.approx((3.0, -1.0 + 2 * speed), abs=0.15)
     assert mover.radius == pytest.approx(0.3, abs=0.1)
     assert moving.sum() > 10
+
+
+@given(st.floats(0.05, 1.0), st.floats(0.02, 0.7))
+@settings(deadline=None)
+def test_a_disc_is_told_from_its_width_and_the_mean_of_its_points(radius, sin):
+    distance = radius / sin
+    angles = math.asin(sin) * (np.arange(20_000) + 0.5) / 20_000
+    ranges = distance * np.cos(angles) - np.sqrt(radius**2 - (distance * np.sin(angles)) ** 2)
+    half = radius * math.sqrt(1.0 - sin * sin)
+    got = kernels.disc_in_view(float(np.mean(ranges * np.cos(angles))), half)
+    assert got == pytest.approx((distance, radius), rel=0.02)
+
+
+@pytest.mark.parametrize("distance", [0.8, 1.0, 2.0, 4.0])
+def test_a_walker_is_where_it_is_though_less_than_half_is_seen_from_near_by(distance):
+    def coming(t):
+        return [(distance + 1.5 - 0.5 * t, 0.0, 0.3)]
+
+    _, tracker, _ = watch(coming, 3.0, noise=np.random.default_rng(2))
+    (mover,) = tracker.movers
+    assert (mover.x, mover.y) == pytest.approx((distance, 0.0), abs=0.03)
+    assert mover.radius == pytest.approx(0.3, abs=0.03)
 
 
 def test_a_walker_leaves_no_ghost():
@@ -168,6 +192,18 @@ def test_who_comes_out_from_behind_something_is_found_before_half_is_seen(radius
     assert mover.y + mover.radius == pytest.approx(edge + 0.5 * 0.6, abs=0.08)
 
 
+@pytest.mark.parametrize("distance", [0.5, 0.7, 2.0])
+@pytest.mark.parametrize("hidden", [1, -1])
+def test_a_disc_of_which_one_end_is_in_view_is_where_it_is(distance, hidden):
+    step = 0.005
+    angles = np.arange(-0.1, math.asin(0.3 / distance), step)
+    ranges = distance * np.cos(angles) - np.sqrt(0.09 - (distance * np.sin(angles)) ** 2)
+    points = np.column_stack([ranges * np.cos(angles), hidden * ranges * np.sin(angles)])
+    points = points if hidden > 0 else points[::-1].copy()
+    at = kernels.disc_at_end(points, 0, len(points), hidden, 0.3, 0.5 * step, 0.0, 0.0)
+    assert at == pytest.approx((distance, 0.0), abs=0.01)
+
+
 def test_what_stands_and_comes_into_view_is_no_mover():
     still = [PILLAR, (4.0, 1.1, 0.3), (4.5, -1.2, 0.4), (5.0, 0.3, 0.2)]
     _, tracker, moving = watch(lambda t: still, 3.0, lambda t: Pose2D(0.2 * t, 0.5 * t, 0.0))
@@ -262,12 +298,26 @@ def test_a_walker_close_by_something_wide_that_no_map_shows_is_found(walks):
         assert tracker.movers == ()
 
 
-def test_what_comes_into_view_is_new_until_it_is_known_to_walk_or_to_stand():
+@pytest.mark.parametrize("setback", [0.12, 0.4])
+def test_a_part_of_something_wide_is_nobody_unless_where_space_was_seen_free(setback):
+    """A step in a face, between what takes a wide thing apart and what makes it two things."""
+    layer, tracker, here = ObstacleLayer(), Tracker(), Pose2D(0.0, 0.0, 0.0)
+    layer.follow(0.0, 0.0)
+    for k in range(3):
+        faces = ranges_to_face(2.0, -0.9, 0.0), ranges_to_face(2.0 + setback, 0.0, 0.9)
+        look(np.minimum(*faces), here, NOTHING_KNOWN, layer, tracker, k / 10)
+    assert len(tracker.newcomers()) == (0 if setback < 0.2 else 2)
+
+
+def test_what_comes_into_view_is_new_until_it_is_known_where_it_walks_or_that_it_stands():
     def walker_and_post(t):
         return [(3.0, -1.0 + 0.5 * t, 0.3), (-3.0, 0.0, 0.3)]
 
     _, tracker, _ = watch(walker_and_post, 0.1)
     assert len(tracker.in_sight()) == 0
+    assert tracker.newcomers()[:, 0] == pytest.approx([3.0, -3.0], abs=0.2)
+    _, tracker, _ = watch(walker_and_post, 0.6)
+    assert len(tracker.in_sight()) == 1  # and yet where to may be wrong
     assert tracker.newcomers()[:, 0] == pytest.approx([3.0, -3.0], abs=0.2)
     _, tracker, _ = watch(walker_and_post, 1.0)
     assert len(tracker.newcomers()) == 0

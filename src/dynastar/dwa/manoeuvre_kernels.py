@@ -13,7 +13,6 @@ GENTLE = 0.8  # share of the braking that stopping where a way leads may use
 PURSUED = 3  # points of the path ahead that are steered at
 SURE = 1.5  # s of driving over which it gets less sure how near movers come
 LATE = 0.1  # m of gap that a second is worth by which a touch is put off
-HALF = 0.5  # of how deep a touch at rest would be, up to which backing is better
 EVEN = 0.02  # m, gaps that differ by less are even
 
 
@@ -68,15 +67,20 @@ def asked(way, t, x, y, theta, path, at, limits):
 
 @njit(cache=True)
 def nearest_mover(movers, after, turn, x, y):
-    """The gap (m) from a point to movers ``after`` seconds from now, if they turn back at ``turn``."""
+    """The gap (m) from a point to movers ``after`` seconds from now, if they turn back at ``turn``.
+
+    They turn back at their top speed; if they never do they go on at it, or as fast as they are now.
+    """
     least = np.inf
     for m in range(len(movers)):
         mx, my, vx, vy, radius, top = movers[m]
-        span = after
-        if after > turn:
-            speed = math.hypot(vx, vy)
-            span = turn - (after - turn) * (max(speed, top) / speed if speed > 1e-3 else 0.0)
+        speed = math.hypot(vx, vy)
+        faster = max(speed, top) / speed if speed > 1e-3 else 0.0
+        span = after if after <= turn else turn - (after - turn) * faster
         least = min(least, math.hypot(mx + vx * span - x, my + vy * span - y) - radius)
+        if turn == np.inf and faster > 1.0:
+            span = after * faster
+            least = min(least, math.hypot(mx + vx * span - x, my + vy * span - y) - radius)
     return least
 
 
@@ -180,10 +184,10 @@ def aside(ways, enough, state, path, seconds, scene, turns, gaps, touched):
 
     That is ``worth`` over all ``turns`` that they may take. Of those that are even it is the one that
     ends nearest the path's end. Its first command has a certified stop for all that stands, and one
-    before movers too, unless none comes near on the way or braking ends in a touch at once. Where it
-    ends in one for all that can be told, backing counts as no less sure, and is as good as clear if
-    that is half as deep. Returns the way's index or -1 if none is better than braking, its first v and
-    omega, and the least gap (m) of braking.
+    before movers too, unless none comes near on the way or it will be touched before it could rest.
+    Where it would be touched at rest for all that can be told, backing counts as no less sure, and
+    may end in a touch, too, as long as the robot can be at rest by then. Returns the way's index or
+    -1 if none is better than braking, its first v and omega, and the least gap (m) of braking.
     """
     limits = scene.limits
     goal_x, goal_y = path[-1]
@@ -198,7 +202,7 @@ def aside(ways, enough, state, path, seconds, scene, turns, gaps, touched):
     if braked >= enough:
         return found, best_v, best_w, braked
     stop = max(abs(state[3]) / limits.v_brake, abs(state[4]) / limits.omega_brake)
-    doomed = touched.min() <= stop + STEP
+    doomed = touched.min() <= stop
     for i in range(len(ways)):
         backs = depth < 0.0 and ways[i, 0] < 0.0
         strays = 0.0 if backs else spread
@@ -210,8 +214,9 @@ def aside(ways, enough, state, path, seconds, scene, turns, gaps, touched):
         better = gap > best + EVEN or (found >= 0 and gap > best - EVEN and left < nearest)
         if not can_be or not better:
             continue
-        clear = doomed or gaps.min() > (HALF * depth if backs else 0.0)
         v, omega, standing, moving = first_command(ways[i], state, path, scene)
+        rest = scene.period + max(abs(v) / limits.v_brake, abs(omega) / limits.omega_brake)
+        clear = doomed or gaps.min() > 0.0 or (backs and touched.min() > rest + STEP)
         if standing and (moving or clear):
             best, nearest, found = max(gap, best), left, i
             best_v, best_w = v, omega

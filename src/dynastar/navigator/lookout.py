@@ -13,15 +13,16 @@ from dynastar.obstacles.tracker_kernels import HALF_SEEN, UNSEEN
 from dynastar.path import Path
 from dynastar.robot import Robot
 
+Floats = npt.NDArray[np.float64]
 AHEAD = 3.0  # m of the path onto which somebody may come
 FURTHER = 3.0  # m of the path that the robot may go on
-EVERY = 0.2  # m between the points that they may come onto
+EVERY = 0.1  # m between the points that they may come onto
 SPACING = 0.1  # m between the path's points
 RADIUS = HALF_SEEN  # m, of somebody
 COME = 1.2  # m that they have come straight to where they are hidden
 NEAR = 3.0  # m from the path, beyond which there is time enough
 REACTION = 0.4  # s until they are known to move
-LOOK = 4.0  # s of driving on
+LOOK = 6.0  # s of driving on
 CANDIDATES = 7  # speeds
 SLOW = 0.2  # m/s, slower than which the robot goes for nobody that it does not see
 
@@ -33,7 +34,7 @@ class View(NamedTuple):
     map or a scan shows something.
     """
 
-    free_at: npt.NDArray[np.float64]
+    free_at: Floats
     solid: npt.NDArray[np.bool_]
     x0: float
     y0: float
@@ -47,7 +48,7 @@ class Lookout:
     def __init__(self, robot: Robot, config: NavigatorConfig) -> None:
         self.limits, self.pace = robot.limits, config.hidden_speed
         self.reaction = REACTION + config.latency
-        self.apart = robot.footprint.circumscribed + RADIUS + config.mover_margin
+        self.apart = robot.footprint.circumscribed + RADIUS
 
     def speed(
         self,
@@ -65,7 +66,8 @@ class Lookout:
         From it the robot can stop before whoever comes straight out of hiding, and back out of their
         way if it can back, or go on and be past; so it can for who has just come into view and may be
         walking or not. Nobody comes through what is known to move, which the window deals with. If
-        there is no such speed near ``v`` it is the lowest, but never less than ``SLOW``.
+        there is no such speed near ``v`` it is the lowest, but never less than ``SLOW`` for nobody that
+        can be seen.
         """
         if self.pace == 0.0:
             return top
@@ -80,25 +82,32 @@ class Lookout:
         onto = points[: round(AHEAD / SPACING) + 1 : round(EVERY / SPACING)]
         onto = np.ascontiguousarray(onto)
         lookout_kernels.shut_discs(tracker.in_sight(), view)
-        found = lookout_kernels.lanes(onto, view, RADIUS, COME, NEAR)
+        hidden = lookout_kernels.lanes(onto, view, RADIUS, COME, NEAR)
+        speed = self._careful(hidden, points, v, top, min(SLOW, top), COME)
         newcomers = chart.on_free_ground(tracker.newcomers())
         if len(newcomers):
             come = lookout_kernels.lanes_of(newcomers, onto, view, RADIUS, NEAR)
-            found = np.vstack([found, come])
+            speed = min(speed, self._careful(come, points, v, top, 0.0, 0.0))
+        return speed
+
+    def _careful(
+        self, lanes: Floats, points: Floats, v: float, top: float, least: float, tail: float
+    ) -> float:
+        """The speed, from ``least`` to ``top`` and near the present ``v``, for who comes by ``lanes``."""
         accel = self.limits.v_accel
-        high, low = min(v + accel, top), max(v - 0.5 * accel, min(SLOW, top))  # within a second
-        speeds = np.linspace(max(high, low), low, CANDIDATES)
+        high, low = min(v + accel, top), max(v - 0.5 * accel, least)  # within a second
         return float(
             lookout_kernels.careful(
-                found,
+                lanes,
                 points,
                 SPACING,
-                speeds,
-                accel,
-                self.limits.v_brake,
+                v,
+                np.linspace(max(high, low), low, CANDIDATES),
+                (self.limits.v_brake, accel),
                 -min(self.limits.v_min, 0.0),
                 top,
                 self.reaction,
+                tail,
                 self.pace,
                 self.apart,
                 LOOK,

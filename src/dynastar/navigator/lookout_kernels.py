@@ -106,54 +106,70 @@ def lanes_of(newcomers, path, view, radius, farthest):
 
 
 @njit(cache=True)
-def touches(lane, path, spacing, v, change, least, top, reaction, speed, apart, seconds):
+def touches(lane, path, spacing, v, aim, last, rates, reaction, tail, speed, apart, seconds):
     """Whether who comes down a lane touches a robot that drives along a path from ``v`` (m/s).
 
-    After the ``reaction`` (s) that changes by ``change`` (m/s2), up to ``top`` or down to ``least``;
-    below 0 the robot backs, straight. If it may not, rest ends it. They touch when their centres are
-    less than ``apart`` (m) from each other.
+    They may be anywhere from the lane's begin to ``tail`` metres behind it, and go at ``speed``.
+
+    At ``rates`` (m/s2, of getting slower and faster) it goes over to ``aim`` (m/s), and after the
+    ``reaction`` (s) to ``last``; below 0 it backs, straight, and 0 is the end of it. They touch when
+    their centres are less than ``apart`` (m) from each other.
     """
     x, y, ux, uy = lane
     back_x, back_y = path[0, 0] - path[1, 0], path[0, 1] - path[1, 1]
+    slower, faster = rates[0] * STEP, rates[1] * STEP
+    fastest = max(v, aim, abs(last))
     s = t = 0.0
     while t < seconds:
         t += STEP
-        if t > reaction:
-            v = min(max(v + change * STEP, least), top)
-            if v == least == 0.0:
-                return False
-        s += v * STEP
-        i = int(s / spacing)
+        to = aim if t <= reaction else last
+        before = v
+        v = max(v - slower, to) if v > to else min(v + faster, to)
+        if before == v == last == 0.0:
+            return False
+        s += 0.5 * (before + v) * STEP
+        i = int(s / spacing + 0.5)
         if i >= len(path):
             return False
         px, py = path[max(i, 0)]
         if s < 0.0:
             px, py = px - s / spacing * back_x, py - s / spacing * back_y
-        dx, dy = px - x - speed * t * ux, py - y - speed * t * uy
-        if dx * dx + dy * dy < apart * apart:
+        dx, dy = px - x, py - y
+        ahead = dx * ux + dy * uy - speed * t  # of whoever comes first
+        beyond = max(ahead, -tail - ahead, 0.0)
+        aside = dx * uy - dy * ux
+        square = beyond * beyond + aside * aside
+        if square < apart * apart:
             return True
+        within = apart + (speed + fastest) * (seconds - t)
+        if square > within * within:
+            return False
     return False
 
 
 @njit(cache=True)
-def careful(found, path, spacing, speeds, accel, brake, back, top, reaction, speed, apart, seconds):
-    """The first of ``speeds`` from which the robot could stop or go on, whoever comes; or the last.
+def careful(
+    found, path, spacing, v, speeds, rates, back, top, reaction, tail, speed, apart, seconds
+):
+    """The first of ``speeds`` that leaves the robot able to stop or go on, whoever comes; or the last.
 
-    Where it may back, at up to ``back`` (m/s), it stops in time if it can also back out of their way.
-    Who would be nearer than ``apart`` (m) already, behind a robot that does not see there, say, is so
-    at any speed and is left out.
+    It drives at ``v`` (m/s). Where it may back, at up to ``back`` (m/s), it stops in time if it can
+    also back out of their way. Who would be nearer than ``apart`` (m) already, behind a robot that
+    does not see there, say, is so at any speed and is left out.
     """
-    for v in speeds:
+    first = 0  # who could not be avoided at the last speed is asked first about the next
+    for aim in speeds:
         fine = True
-        for k in range(len(found)):
+        for j in range(len(found)):
+            k = (first + j) % len(found)
             if math.hypot(found[k, 0] - path[0, 0], found[k, 1] - path[0, 1]) < apart:
                 continue
-            how = reaction, speed, apart, seconds
-            if touches(found[k], path, spacing, v, -brake, -back, v, *how) and touches(
-                found[k], path, spacing, v, accel, v, max(top, v), *how
+            how = rates, reaction, tail, speed, apart, seconds
+            if touches(found[k], path, spacing, v, aim, -back, *how) and touches(
+                found[k], path, spacing, v, aim, max(top, aim), *how
             ):
-                fine = False
+                first, fine = k, False
                 break
         if fine:
-            return v
+            return aim
     return speeds[-1]

@@ -13,7 +13,7 @@ from dynastar.obstacles import tracker_kernels as kernels
 from dynastar.obstacles.layer import ObstacleLayer, Points
 from dynastar.scan import LaserScan
 
-NEW = 6  # scans, after which what moves is known to
+NEW = 8  # scans, after which what moves is known to, and where to
 
 
 class TrackerConfig(NamedTuple):
@@ -151,9 +151,8 @@ class Tracker:
         return self._last_seen(self._tracks[:, kernels.T_MOVING] > 0)
 
     def newcomers(self) -> Points:
-        """The same of what came into view so lately that it may be moving, or not."""
-        new = (self._tracks[:, kernels.T_MOVING] == 0) & (self._tracks[:, kernels.T_HITS] <= NEW)
-        return self._last_seen(new)
+        """The same of what came into view so lately that it may be going anywhere, or nowhere."""
+        return self._last_seen(self._tracks[:, kernels.T_HITS] <= NEW)
 
     def _last_seen(self, which: npt.NDArray[np.bool_]) -> Points:
         now = self._tracks[:, kernels.T_SEEN] >= self._stamp

@@ -23,7 +23,26 @@ HIDDEN = (1.0, 1.5, 4.0)  # so much less sure is a centre with so many ends hidd
 TOP_KEPT = 0.97  # of a mover's top speed from scan to scan
 CRACK = 0.25  # of the gap between two things, at which what is too wide is taken apart
 PART_FRESH = 0.6  # of its points in space seen free before, or a part of it is none
-DISC_DEPTH = 0.25 * math.pi  # mean depth of a disc's visible half, in radii
+STEEPEST = 0.8  # radius over distance, up to which a disc is told from its width
+
+
+@njit(cache=True)
+def disc_in_view(r, half):
+    """Distance of the centre and radius of a disc, ``half`` as wide as it looks, its points at ``r``.
+
+    ``r`` (m) is the mean of its points' distances along the line to the centre. A disc at distance D
+    shows an arc to where rays touch it, at sin(a) = radius / D either side of that line; so it is
+    radius cos(a) to either side, and the arc's mean over all rays is D (1 - sin 2a / (2a)) / 2 +
+    pi / 4 radius sin(a) / a nearer than the centre.
+    """
+    radius, distance = half, r + 0.25 * math.pi * half  # as from far away
+    for _ in range(4):
+        sin = min(radius / distance, STEEPEST)
+        a, cos = math.asin(sin), math.sqrt(1.0 - sin * sin)
+        radius = half / cos
+        nearer = 0.5 * distance * (1.0 - sin * cos / a) + 0.25 * math.pi * radius * sin / a
+        distance = r + nearer
+    return distance, radius
 
 
 @njit(cache=True)
@@ -36,16 +55,19 @@ def disc_at_end(points, start, stop, hidden, radius, half_step, sensor_x, sensor
     n = len(points)
     end = ((stop - 1) if hidden > 0 else start) % n
     end_x, end_y = points[end, 0] - sensor_x, points[end, 1] - sensor_y
-    far = max(math.hypot(end_x, end_y), 1e-9)
-    angle = math.atan2(end_y, end_x) + hidden * (half_step - math.asin(min(1.0, radius / far)))
-    ux, uy = math.cos(angle), math.sin(angle)
-    depth = 0.0
-    for k in range(start, stop):
-        px, py = points[k % n, 0] - sensor_x, points[k % n, 1] - sensor_y
-        off = ux * py - uy * px
-        depth += ux * px + uy * py + math.sqrt(max(radius * radius - off * off, 0.0))
-    depth /= stop - start
-    return sensor_x + depth * ux, sensor_y + depth * uy
+    edge = math.atan2(end_y, end_x) + hidden * half_step  # where rays touch the disc
+    distance = math.hypot(math.hypot(end_x, end_y), radius)
+    ux = uy = 0.0
+    for _ in range(3):
+        angle = edge - hidden * math.asin(min(radius / max(distance, 1e-9), 1.0))
+        ux, uy = math.cos(angle), math.sin(angle)
+        distance = 0.0
+        for k in range(start, stop):
+            px, py = points[k % n, 0] - sensor_x, points[k % n, 1] - sensor_y
+            off = ux * py - uy * px
+            distance += ux * px + uy * py + math.sqrt(max(radius * radius - off * off, 0.0))
+        distance /= stop - start
+    return sensor_x + distance * ux, sensor_y + distance * uy
 
 
 @njit(cache=True)
@@ -155,10 +177,9 @@ def clusters(
             cx, cy = cx / count, cy / count
             if not part or fresh >= PART_FRESH * count:
                 r = max(math.hypot(cx - sensor_x, cy - sensor_y), 1e-9)
-                radius = max(0.5 * (width + r * step), 0.05)
-                push = DISC_DEPTH * radius / r
-                found[m, C_X] = cx + push * (cx - sensor_x)
-                found[m, C_Y] = cy + push * (cy - sensor_y)
+                distance, radius = disc_in_view(r, max(0.5 * (width + r * step), 0.05))
+                found[m, C_X] = sensor_x + distance / r * (cx - sensor_x)
+                found[m, C_Y] = sensor_y + distance / r * (cy - sensor_y)
                 found[m, C_RADIUS] = radius
                 found[m, C_FRESH] = fresh / count
                 found[m, C_FIRST] = start
