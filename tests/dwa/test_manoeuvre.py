@@ -275,6 +275,16 @@ def test_who_would_be_run_over_where_it_stands_backs_on_though_it_could_not_stop
     assert goes_aside(past, back, -0.02, weak) is None
 
 
+@pytest.mark.parametrize(("gap", "backs"), [(0.31, True), (0.25, False)])
+def test_it_backs_before_who_will_touch_it_as_long_as_it_can_be_at_rest_by_then(gap, backs):
+    """Backing at 0.1 m/s it stops within 0.6 s; the touch comes after 1.2 s or after 0.8 s."""
+    weak = REVERSING._replace(v_accel=0.2, v_brake=0.2)
+    head_on, back = [(5.6 + gap, 5.0, -0.5, 0.0, 0.3, 0.5)], straight(-0.5, 0.0, 4.0, 0.0)
+    touched = driven(back, v=-0.1, movers=head_on, limits=weak)[3]
+    assert touched == pytest.approx([1.2 if backs else 0.8])
+    assert goes_aside(head_on, back, -0.1, weak) == (pytest.approx(-0.12) if backs else None)
+
+
 def test_who_will_be_touched_whatever_it_does_is_at_rest_by_then():
     weak = REVERSING._replace(v_accel=0.2, v_brake=0.2)
     at_once = [(5.2, 5.6, 0.0, -0.5, 0.3, 0.5)]

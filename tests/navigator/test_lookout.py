@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator.chart import Chart
 from dynastar.navigator.config import NavigatorConfig
-from dynastar.navigator.lookout import COME, NEAR, RADIUS, SLOW, Lookout, View
+from dynastar.navigator.lookout import COME, EVERY, LOOK, NEAR, RADIUS, SLOW, Lookout, View
 from dynastar.navigator.lookout_kernels import careful, lanes, lanes_of, shut_discs, touches
 from dynastar.obstacles import ObstacleLayer, Tracker
 from dynastar.path import Path
@@ -84,6 +84,20 @@ def test_every_lane_leads_out_of_hiding_through_open_space_onto_the_path(seed):
         )
         assert not sight.solid[rows, columns].any()
         assert sight.free_at[int(y / CELL), int(x / CELL)] < sight.since
+
+
+@pytest.mark.parametrize("phase", np.linspace(0.0, 0.2, 9)[:-1])
+def test_a_gap_a_little_wider_than_somebody_is_not_missed(phase):
+    """0.67 m between two corners, at 45 degrees to the path, wherever on it the robot is."""
+    blocks = [(3.45, 4.5, 5.5, 5.5), (1.0, 6.0, 3.0, 8.0)]
+    x = np.arange(phase, 3.0, EVERY)
+    path = np.column_stack([x, np.full_like(x, 4.0)])
+    found = lanes(path, view([(3.0, 5.7, 8.0, 8.0)], blocks), RADIUS, COME, NEAR)
+    assert np.isclose(found[:, 2:], -math.sqrt(0.5)).all(axis=1).any()
+
+
+def test_it_looks_ahead_until_whoever_is_near_has_come():
+    assert LOOK * NavigatorConfig().hidden_speed >= NEAR
 
 
 def test_nobody_comes_through_what_is_known_to_move():
