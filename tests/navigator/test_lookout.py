@@ -135,15 +135,15 @@ def test_who_has_just_come_into_view_may_come_onto_the_path_from_there():
 
 AHEAD = np.column_stack([0.1 * np.arange(60), np.zeros(60)])
 RATES, REACTION = (0.2, 0.2), 0.4
-WHO = (REACTION, 0.0, 0.5, 0.75, 4.0)  # comes at 0.5 m/s
+WHO = (0.75, RATES, REACTION, 0.0, 0.5, 4.0)  # within 0.75 m, comes at 0.5 m/s
 
 
-def touches_slowly(lane, v, aim, last, reaction, tail, speed, apart, seconds):
+def touches_slowly(lane, v, aim, last, apart, rates, reaction, tail, speed, seconds):
     """The same in steps of a millisecond and for many behind each other; by how much they miss."""
     s, gap = 0.0, math.inf
     for t in np.arange(0.001, seconds, 0.001):
         to = aim if t <= reaction else last
-        v += min(max(to - v, -RATES[0] * 0.001), RATES[1] * 0.001)
+        v += min(max(to - v, -rates[0] * 0.001), rates[1] * 0.001)
         if v == last == 0.0:
             break
         s += v * 0.001
@@ -170,14 +170,15 @@ def test_who_touches_whom_is_as_in_small_steps(v, more, last, onto, away, angle,
     lane = np.array([onto - away * ux, -away * uy, ux, uy])
     aim = max(v + more, 0.05)
     last = max(last, aim) if last > 0.0 else last
-    who = (REACTION, tail, *WHO[2:])
+    who = (*WHO[:3], tail, *WHO[4:])
     exact = touches_slowly(lane, v, aim, last, *who)
-    found = touches(lane, AHEAD, 0.1, v, aim, last, RATES, *who)
+    found = touches(lane, AHEAD, 0.1, v, aim, last, *who)
     assert found == (exact < 0.0) or abs(exact) < 0.1
 
 
-def choice(lane, v, speeds, back=0.0, top=0.8):
-    return careful(np.array(lane), AHEAD, 0.1, v, np.array(speeds), RATES, back, top, *WHO)
+def choice(lane, v, speeds, back=0.0, top=0.8, spare=0.0):
+    apart, *rest = WHO
+    return careful(np.array(lane), AHEAD, 0.1, v, np.array(speeds), back, top, apart, spare, *rest)
 
 
 def can_be(lane, v, back=0.0, top=0.8):
@@ -197,6 +198,13 @@ def test_the_robot_goes_so_slowly_that_it_could_stop_or_so_fast_that_it_is_past(
     assert can_be(np.empty((0, 4)), 0.5)
 
 
+def test_going_on_takes_more_room_than_standing():
+    later = [[1.5, 2.0, 0.0, -1.0]]
+    for v, room in ((0.5, 0.5), (0.8, 9.0)):  # stops in time; would be past, not by 0.3 m
+        assert choice(later, v, [v, 9.0]) == v
+        assert choice(later, v, [v, 9.0], spare=0.3) == room
+
+
 def test_a_speed_counts_from_when_the_robot_can_have_it():
     """At 0.2 m/s2, from 0.5 m/s it has 0.42 m/s at the soonest after the reaction."""
     assert 0.4 < choice(CROSSING, 0.5, np.arange(0.6, 0.3, -0.01)) < 0.48
@@ -214,7 +222,7 @@ def test_who_comes_a_little_later_counts_as_well():
     """The first would be past before the robot is there, and those behind them come as it is."""
     lane = np.array([1.7, 0.9, 0.0, -1.0])
     first, all_of_them = (
-        touches(lane, AHEAD, 0.1, 0.6, 0.6, 0.0, RATES, REACTION, tail, 0.8, 0.75, 6.0)
+        touches(lane, AHEAD, 0.1, 0.6, 0.6, 0.0, 0.75, RATES, REACTION, tail, 0.8, 6.0)
         for tail in (0.0, 1.2)
     )
     assert not first
@@ -234,7 +242,7 @@ def test_who_may_back_out_of_the_way_does_not_wait_in_it():
     )
     assert backs < stays  # where it would rest it would be run over
     assert abs(1.2 - REACTION * stays - stays**2 / 0.4) < 0.75
-    assert not touches(np.array(late[0]), AHEAD, 0.1, backs, backs, -0.5, RATES, *WHO)
+    assert not touches(np.array(late[0]), AHEAD, 0.1, backs, backs, -0.5, *WHO)
 
 
 GRID = OccupancyGrid.from_text(
@@ -311,3 +319,4 @@ def test_a_longer_latency_is_a_longer_reaction():
     assert late.reaction == pytest.approx(Lookout(ROBOT, NavigatorConfig()).reaction + 0.3)
     big = replace(ROBOT, footprint=ROBOTS["jackal"].footprint)
     assert Lookout(big, NavigatorConfig()).apart > late.apart
+    assert late.spare == pytest.approx(0.15 + 1.5 * 0.1)  # margin, and what movers may stray

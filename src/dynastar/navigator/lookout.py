@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.dwa.manoeuvre_kernels import SURE
 from dynastar.navigator import lookout_kernels
 from dynastar.navigator.chart import Chart
 from dynastar.navigator.config import NavigatorConfig
@@ -49,6 +50,8 @@ class Lookout:
         self.limits, self.pace = robot.limits, config.hidden_speed
         self.reaction = REACTION + config.latency
         self.apart = robot.footprint.circumscribed + RADIUS
+        # As much as commands will need to go on, once they are seen.
+        self.spare = config.mover_margin + SURE * config.mover_error
 
     def speed(
         self,
@@ -103,13 +106,14 @@ class Lookout:
                 SPACING,
                 v,
                 np.linspace(max(high, low), low, CANDIDATES),
-                (self.limits.v_brake, accel),
                 -min(self.limits.v_min, 0.0),
                 top,
+                self.apart,
+                self.spare,
+                (self.limits.v_brake, accel),
                 self.reaction,
                 tail,
                 self.pace,
-                self.apart,
                 LOOK,
             )
         )

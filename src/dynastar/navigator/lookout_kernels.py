@@ -106,7 +106,7 @@ def lanes_of(newcomers, path, view, radius, farthest):
 
 
 @njit(cache=True)
-def touches(lane, path, spacing, v, aim, last, rates, reaction, tail, speed, apart, seconds):
+def touches(lane, path, spacing, v, aim, last, apart, rates, reaction, tail, speed, seconds):
     """Whether who comes down a lane touches a robot that drives along a path from ``v`` (m/s).
 
     They may be anywhere from the lane's begin to ``tail`` metres behind it, and go at ``speed``.
@@ -149,13 +149,14 @@ def touches(lane, path, spacing, v, aim, last, rates, reaction, tail, speed, apa
 
 @njit(cache=True)
 def careful(
-    found, path, spacing, v, speeds, rates, back, top, reaction, tail, speed, apart, seconds
+    found, path, spacing, v, speeds, back, top, apart, spare, rates, reaction, tail, speed, seconds
 ):
     """The first of ``speeds`` that leaves the robot able to stop or go on, whoever comes; or the last.
 
     It drives at ``v`` (m/s). Where it may back, at up to ``back`` (m/s), it stops in time if it can
-    also back out of their way. Who would be nearer than ``apart`` (m) already, behind a robot that
-    does not see there, say, is so at any speed and is left out.
+    also back out of their way; to go on it needs ``spare`` metres more. Who would be nearer than
+    ``apart`` (m) already, behind a robot that does not see there, say, is so at any speed and is
+    left out.
     """
     first = 0  # who could not be avoided at the last speed is asked first about the next
     for aim in speeds:
@@ -164,9 +165,9 @@ def careful(
             k = (first + j) % len(found)
             if math.hypot(found[k, 0] - path[0, 0], found[k, 1] - path[0, 1]) < apart:
                 continue
-            how = rates, reaction, tail, speed, apart, seconds
-            if touches(found[k], path, spacing, v, aim, -back, *how) and touches(
-                found[k], path, spacing, v, aim, max(top, aim), *how
+            how = rates, reaction, tail, speed, seconds
+            if touches(found[k], path, spacing, v, aim, -back, apart, *how) and touches(
+                found[k], path, spacing, v, aim, max(top, aim), apart + spare, *how
             ):
                 first, fine = k, False
                 break
