@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator.chart import Chart
 from dynastar.navigator.config import NavigatorConfig
-from dynastar.navigator.lookout import COME, EVERY, LOOK, NEAR, RADIUS, SLOW, Lookout, View
+from dynastar.navigator.lookout import COME, EVERY, NEAR, RADIUS, SLOW, Lookout, View
 from dynastar.navigator.lookout_kernels import careful, lanes, lanes_of, shut_discs, touches
 from dynastar.obstacles import ObstacleLayer, Tracker
 from dynastar.path import Path
@@ -97,7 +97,9 @@ def test_a_gap_a_little_wider_than_somebody_is_not_missed(phase):
 
 
 def test_it_looks_ahead_until_whoever_is_near_has_come():
-    assert LOOK * NavigatorConfig().hidden_speed >= NEAR
+    for pace in (0.25, 0.5):
+        slow = NavigatorConfig()._replace(hidden_speed=pace)
+        assert Lookout(ROBOT, slow).look * pace == pytest.approx(NEAR)
 
 
 def test_nobody_comes_through_what_is_known_to_move():

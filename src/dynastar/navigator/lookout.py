@@ -23,7 +23,6 @@ RADIUS = HALF_SEEN  # m, of somebody
 COME = 1.2  # m that they have come straight to where they are hidden
 NEAR = 3.0  # m from the path, beyond which there is time enough
 REACTION = 0.4  # s until they are known to move
-LOOK = 6.0  # s of driving on
 CANDIDATES = 7  # speeds
 SLOW = 0.2  # m/s, slower than which the robot goes for nobody that it does not see
 
@@ -48,6 +47,7 @@ class Lookout:
 
     def __init__(self, robot: Robot, config: NavigatorConfig) -> None:
         self.limits, self.pace = robot.limits, config.hidden_speed
+        self.look = NEAR / self.pace if self.pace > 0.0 else 0.0  # s until whoever is near has come
         self.reaction = REACTION + config.latency
         self.apart = robot.footprint.circumscribed + RADIUS
         # As much as commands will need to go on, once they are seen.
@@ -69,8 +69,8 @@ class Lookout:
         From it the robot can stop before whoever comes straight out of hiding, and back out of their
         way if it can back, or go on and be past; so it can for who has just come into view and may be
         walking or not. Nobody comes through what is known to move, which the window deals with. If
-        there is no such speed near ``v`` it is the lowest, but never less than ``SLOW`` for nobody that
-        can be seen.
+        there is no such speed near ``v`` it is the lowest; for who cannot be seen, never less than
+        ``SLOW``.
         """
         if self.pace == 0.0:
             return top
@@ -114,6 +114,6 @@ class Lookout:
                 self.reaction,
                 tail,
                 self.pace,
-                LOOK,
+                self.look,
             )
         )
