@@ -22,7 +22,7 @@ BODY = Body(np.empty((0, 2)), np.empty((0, 3)), 0.3, 0.3)
 HERE = Pose2D(5.0, 5.0, 0.0)
 OPEN = np.full((200, 200), 9.0, np.float32)
 WIDE = np.full((500, 500), 9.0, np.float32)
-PATH = np.column_stack([5.0 + 0.1 * np.arange(30), np.full(30, 5.0)])
+PATH = np.column_stack([5.0 + 0.1 * np.arange(30), np.full(30, 5.0), np.full(30, 9.0)])
 STAND = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 KEEP = (math.inf,)
 SECONDS = 6.0
@@ -101,10 +101,26 @@ def test_the_gap_is_that_of_a_drive_step_by_step(first, then, mover, turn):
 
 
 def test_following_stays_on_the_path_and_stops_at_its_end():
-    bend = np.vstack([PATH[:10], PATH[9] + 0.1 * np.outer(np.arange(1, 12), (0.0, 1.0))])
+    bend = np.vstack([PATH[:10], PATH[9] + 0.1 * np.outer(np.arange(1, 12), (0.0, 1.0, 0.0))])
     end, can_be, _, _ = driven(following(0.5), path=bend, seconds=9.0)
     assert can_be
-    assert math.dist(end, bend[-1]) < 0.25
+    assert math.dist(end, bend[-1, :2]) < 0.25
+
+
+def test_following_keeps_to_the_speeds_that_the_path_allows():
+    """Too fast for the bend it swings into the wall beyond."""
+    bend = np.vstack([PATH[:10], PATH[9] + 0.1 * np.outer(np.arange(1, 12), (0.0, 1.0, 0.0))])
+    closed = np.zeros((200, 200), bool)
+    closed[:, 128:] = True
+    field, slower = distance_field(closed, 0.05), bend.copy()
+    slower[:, 2] = 0.3
+    fast, slow = (
+        driven(following(1.0), v=0.3, path=path, field=field, seconds=9.0)
+        for path in (bend, slower)
+    )
+    assert not fast[1]
+    assert slow[1]
+    assert math.dist(slow[0], bend[-1, :2]) < 0.25
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.7, 1.6, 2.5, math.pi, -1.2, -2.8])
@@ -250,12 +266,12 @@ def test_what_it_goes_on_with_can_be_stopped_for_what_stands_and_before_movers(s
 # -- out of the way --------------------------------------------------------------------------------
 
 
-def goes_aside(movers, way, v, limits, spread=0.1):
+def goes_aside(movers, way, v, limits, omega=0.0):
     """The first speed of a way that is better than braking, or None."""
     gaps, touched = np.empty(len(KEEP)), np.empty(len(KEEP))
-    ways, around = np.array([way], float), scene(movers, spread=spread, limits=limits)
+    ways, around = np.array([way], float), scene(movers, spread=0.1, limits=limits)
     found, v, _, _ = aside(
-        ways, 0.3, (*HERE, v, 0.0), PATH, SECONDS, around, np.array(KEEP), gaps, touched
+        ways, 0.3, (*HERE, v, omega), PATH, SECONDS, around, np.array(KEEP), gaps, touched
     )
     return v if found >= 0 else None
 
@@ -293,3 +309,12 @@ def test_who_will_be_touched_whatever_it_does_is_at_rest_by_then():
         assert driven(way, v=v, movers=at_once, limits=weak)[3] == pytest.approx([STEP])
         assert goes_aside(at_once, way, v, weak) is None
     assert goes_aside(at_once, back, -0.1, weak) == pytest.approx(-0.12)  # at rest it cannot be
+
+
+@pytest.mark.parametrize(("gap", "brakes"), [(0.75, True), (0.65, False)])
+def test_who_can_be_at_rest_by_the_touch_brakes_though_somebody_may_be_there_sooner(gap, brakes):
+    """It turns for 1.67 s more. The touch comes after 1.8 s or 1.6 s, if nobody strays."""
+    weak = REVERSING._replace(v_accel=0.2, v_brake=0.2, omega_accel=0.3, omega_brake=0.3)
+    head_on, round_ = [(5.6 + gap, 5.0, -0.5, 0.0, 0.3, 0.5)], straight(0.3, 0.5, 4.0, 0.0)
+    found = goes_aside(head_on, round_, -0.2, weak, omega=0.5)
+    assert found == (None if brakes else pytest.approx(-0.18))

@@ -18,7 +18,7 @@ ROBOT = Robot("round", LIMITS, Footprint.disc(0.3))
 MARGINS = Margins(0.05, 0.15, 0.1)
 HERE = Pose2D(5.0, 5.0, 0.0)
 OPEN = np.full((200, 200), 9.0, np.float32)
-PATH = np.column_stack([5.0 + 0.1 * np.arange(30), np.full(30, 5.0)])
+PATH = np.column_stack([5.0 + 0.1 * np.arange(30), np.full(30, 5.0), np.full(30, 9.0)])
 
 
 def past(movers, field=OPEN):

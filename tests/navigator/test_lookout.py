@@ -9,6 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from dynastar.grid import OccupancyGrid
+from dynastar.navigator import lookout_kernels
 from dynastar.navigator.chart import Chart
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.lookout import COME, EVERY, NEAR, RADIUS, SLOW, Lookout, View
@@ -322,3 +323,21 @@ def test_a_longer_latency_is_a_longer_reaction():
     big = replace(ROBOT, footprint=ROBOTS["jackal"].footprint)
     assert Lookout(big, NavigatorConfig()).apart > late.apart
     assert late.spare == pytest.approx(0.15 + 1.5 * 0.1)  # margin, and what movers may stray
+
+
+def test_who_hides_may_be_further_back_and_who_is_in_sight_is_where_they_are(monkeypatch):
+    tails = []
+
+    def spy(*given):
+        tails.append(given[-3])
+        return careful(*given)
+
+    monkeypatch.setattr(lookout_kernels, "careful", spy)
+    layer, chart = ObstacleLayer(), Chart(GRID, NavigatorConfig(), 0.4, 0.4)
+    layer.follow(3.0, 1.5)
+    layer.free_at[:] = NOW
+    layer.update(NOW)
+    path = Path(np.array([(3.5, 1.8), (9.5, 1.8)]))
+    seen = Seen((4.6, 1.8, 0.25))
+    Lookout(ROBOT, NavigatorConfig()).speed(NOW, 0.5, 1.0, path, 0.0, layer, chart, seen)
+    assert tails == [COME, 0.0]

@@ -15,6 +15,8 @@ from dynastar.obstacles import MovingObstacle
 from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot
 from dynastar.simulation.lidar import LidarSimulator
 
+BACKING = Robot("backing", LIMITS._replace(v_min=-0.5), ROUND.footprint, ROUND.lidar)
+
 # -- goals -----------------------------------------------------------------------------------------
 
 
@@ -176,6 +178,41 @@ def test_movers_that_are_given_replace_those_tracked():
     assert drive.status.choice is None or drive.status.choice.refused_for_movers > 0
     drive.for_seconds(1.0)
     assert drive.status.choice.refused_for_movers == 0  # the tracker sees nobody
+
+
+@pytest.mark.parametrize("step", ["turn", "back off"])
+def test_who_recovers_gets_out_of_the_way_of_movers_as_others_do(step):
+    drive = Drive(room(), pose=(4.0, 3.0, 0.0), robot=BACKING)
+    drive.navigator.set_goal(Goal(6.5, 3.0))
+    drive.tick()
+    while drive.navigator.recovery.next(drive.now, True) != step:
+        pass
+    lasts = drive.now + (2.0 if step == "back off" else 4.0)
+    for k in range(40):
+        y = 4.5 - 0.05 * k
+        drive.tick(movers=[MovingObstacle(4.1, y, 0.0, -0.5, 0.3)])
+        assert drive.status.state == "recovering" or drive.now > lasts
+        assert math.dist(drive.pose[:2], (4.1, y)) > 0.3 + ROUND.footprint.circumscribed
+
+
+def test_ways_past_movers_are_told_how_fast_the_path_can_be_driven(monkeypatch):
+    drive = under_way()
+    told = []
+    monkeypatch.setattr(drive.navigator.passing, "go_on", lambda start, **_: told.append(start))
+    drive.tick(movers=[MovingObstacle(drive.pose.x + 1.2, 3.0, 0.0, 0.0, 0.3)])
+    x, y, pace = told[0].path.T
+    assert np.all(y == 3.0)
+    assert np.all(np.diff(x) >= 0.0)
+    assert np.all(pace[x < 5.5] == LIMITS.v_max)
+    assert np.all(pace <= LIMITS.v_max)
+    near_goal = Drive(room(), pose=(5.5, 3.0, 0.0))
+    near_goal.navigator.set_goal(Goal(6.5, 3.0))
+    near_goal.tick()
+    monkeypatch.setattr(near_goal.navigator.passing, "go_on", lambda start, **_: told.append(start))
+    near_goal.tick(movers=[MovingObstacle(6.4, 3.0, 0.0, 0.0, 0.3)])
+    pace = told[1].path[:, 2]
+    assert np.all(np.diff(pace) <= 1e-9)  # it brakes for its end
+    assert pace[-1] < 0.2
 
 
 def test_a_mover_that_is_not_finite_is_left_out():

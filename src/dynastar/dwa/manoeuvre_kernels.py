@@ -41,8 +41,9 @@ def asked(way, t, x, y, theta, path, at, limits):
     """The speeds that a way asks for at ``t`` seconds, and the index of the path's nearest point.
 
     A ``way`` is (v, omega, seconds, speed, x, y): v and omega are held for so long; then it leads to
-    (x, y) at the speed, straight on where they are infinite, or along ``path`` (n, 2) where they are
-    no numbers; ``at`` is the index so far. No speed is to stop.
+    (x, y) at the speed, straight on where they are infinite, or along ``path`` (n, 3), x, y and
+    the speed that it allows there, where they are no numbers; ``at`` is the index so far. No speed
+    is to stop.
     """
     v, omega, held, speed, aim_x, aim_y = way
     if t < held - 1e-9:
@@ -57,7 +58,8 @@ def asked(way, t, x, y, theta, path, at, limits):
         ) <= math.hypot(path[at, 0] - x, path[at, 1] - y):
             at += 1
         aim = min(at + PURSUED, len(path) - 1)
-        aim_x, aim_y = path[aim]
+        aim_x, aim_y = path[aim, 0], path[aim, 1]
+        speed = min(speed, path[at, 2])
         left = math.hypot(path[-1, 0] - x, path[-1, 1] - y) - 0.1
     if left <= 0.0:
         return 0.0, 0.0, at
@@ -184,25 +186,26 @@ def aside(ways, enough, state, path, seconds, scene, turns, gaps, touched):
 
     That is ``worth`` over all ``turns`` that they may take. Of those that are even it is the one that
     ends nearest the path's end. Its first command has a certified stop for all that stands, and one
-    before movers too, unless none comes near on the way or it will be touched before it could rest.
-    Where it would be touched at rest for all that can be told, backing counts as no less sure, and
-    may end in a touch, too, as long as the robot can be at rest by then. Returns the way's index or
-    -1 if none is better than braking, its first v and omega, and the least gap (m) of braking.
+    before movers too, unless none comes near on the way or, for all that can be told, it will be
+    touched before it could rest. Where it would be touched at rest, as surely, backing counts as no
+    less sure, and may end in a touch, too, as long as the robot can be at rest by then. Returns the
+    way's index or -1 if none is better than braking, its first v and omega, and the least gap (m) of
+    braking.
     """
     limits = scene.limits
-    goal_x, goal_y = path[-1]
+    goal_x, goal_y = path[-1, 0], path[-1, 1]
     need = min(scene.margins.standing, scene.allowed)
     brake, spread = np.zeros(6), scene.margins.spread
     drive(brake, state, path, seconds, scene, -1.0, turns, False, 0.0, gaps, touched)
     depth = gaps.min()  # negative where a touch is sure, as far as that can be told
+    stop = max(abs(state[3]) / limits.v_brake, abs(state[4]) / limits.omega_brake)
+    doomed = touched.min() <= stop
     drive(brake, state, path, seconds, scene, -1.0, turns, False, spread, gaps, touched)
     braked = gaps.min()
     best, nearest, found = worth(gaps, touched, enough, seconds), np.inf, -1
     best_v = best_w = 0.0
     if braked >= enough:
         return found, best_v, best_w, braked
-    stop = max(abs(state[3]) / limits.v_brake, abs(state[4]) / limits.omega_brake)
-    doomed = touched.min() <= stop
     for i in range(len(ways)):
         backs = depth < 0.0 and ways[i, 0] < 0.0
         strays = 0.0 if backs else spread

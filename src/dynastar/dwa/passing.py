@@ -26,7 +26,10 @@ ANGLES = np.linspace(-math.pi, math.pi, 16, endpoint=False)  # rad
 
 
 class Start(NamedTuple):
-    """Where a way past movers begins, ``ahead`` seconds from now, and the path (n, 2) from there."""
+    """Where a way past movers begins, ``ahead`` seconds from now, and the path (n, 3) from there.
+
+    Its columns are x and y (m) and the speed (m/s) at which it can be driven there.
+    """
 
     pose: Pose2D
     twist: Twist

@@ -79,8 +79,10 @@ class Commands:
         )
         return Pose2D(x, y, theta), Twist(v, omega)
 
-    def send(self, state: RobotState, command: Twist) -> Twist:
-        """Notes a command that has a certified stop; that stop is carried on if need be."""
+    def send(self, state: RobotState, command: Twist | None) -> Twist:
+        """Notes a command that has a certified stop; None carries the last one's stop on."""
+        if command is None:
+            return self.brake(state)
         self._stop = StopProfile(command, self.limits)
         self._note(state.stamp, command)
         return command

@@ -21,7 +21,7 @@ from dynastar.navigator.progress import Progress
 from dynastar.navigator.recovery import Recovery
 from dynastar.navigator.senses import Senses
 from dynastar.navigator.status import RobotState, Status
-from dynastar.navigator.target import leading_away, local_target
+from dynastar.navigator.target import at_bearing, leading_away, local_target
 from dynastar.obstacles import MovingObstacle
 from dynastar.path import Path
 from dynastar.robot import Robot
@@ -229,17 +229,14 @@ class Navigator:
         aligning = near and goal.heading is not None
         if aligning:
             assert goal.heading is not None
-            target = (state.pose.x + math.cos(goal.heading), state.pose.y + math.sin(goal.heading))
+            target = at_bearing(state.pose, goal.heading - state.pose.theta)
         bearing = wrap_angle(
             math.atan2(target[1] - state.pose.y, target[0] - state.pose.x) - state.pose.theta
         )
         self.progress.note_sight(now, seen)
         if abs(bearing) > BEHIND:  # on the side that it turns to already, or it would dither
             bearing = BEHIND if state.twist.omega >= 0.0 else -BEHIND
-            target = (
-                state.pose.x + 2.0 * math.cos(state.pose.theta + bearing),
-                state.pose.y + 2.0 * math.sin(state.pose.theta + bearing),
-            )
+            target = at_bearing(state.pose, bearing)
         if self.progress.note(now, left, bearing):
             self.recovery.progressed(now)
         careful = self.lookout.speed(
@@ -323,22 +320,25 @@ class Navigator:
     def _recover(
         self, state: RobotState, pose: Pose2D, twist: Twist, around: Surroundings, wish: Wish
     ) -> Twist:
-        """Turns towards the path, or backs straight off, through the same window and promise."""
+        """Turns towards the path, or backs straight off, through the same window and promise.
+
+        Where it would stand in the way of movers it gets out of their way first.
+        """
         back_off = self.recovery.step == "back off"
         if back_off:
-            away = (pose.x - 2.0 * math.cos(pose.theta), pose.y - 2.0 * math.sin(pose.theta))
             command = self.window.back_off(
                 pose, twist, around, self._margins(state), self.config.latency
             )
-            self._say("recovering", "back off", target=away)
+            self._say("recovering", "back off", target=at_bearing(pose, math.pi))
         else:
             choice = self.window.choose(
                 pose, twist, around, wish, self._margins(state), self.config.latency, turn_only=True
             )
             command = choice.command
             self._say("recovering", "turn towards the path", choice=choice, target=wish.target)
-        if command is None:
-            return self._commands.brake(state)
+        if len(around.movers) and (command is None or command == REST):
+            start, limit = self._start(state, pose, twist, around, wish)
+            command = self.passing.evade(start, limit) or command
         return self._commands.send(state, command)
 
     def _carry_out(
@@ -354,8 +354,7 @@ class Navigator:
         command = choice.command
         idle = command is None or command == REST
         if len(around.movers) and (choice.refused_for_movers or idle):
-            limit = float(self.chart.speed_limit(np.array([pose[:2]]))[0])
-            start = Start(pose, twist, around, wish.path, self._margins(state), self.config.latency)
+            start, limit = self._start(state, pose, twist, around, wish)
             past = self.passing.go_on(
                 start,
                 faster_than=-math.inf if command is None else command.v + FASTER,
@@ -365,9 +364,18 @@ class Navigator:
             if past is None and idle:
                 past = self.passing.evade(start, limit)
             command = command if past is None else past
-        return (
-            self._commands.brake(state) if command is None else self._commands.send(state, command)
-        )
+        return self._commands.send(state, command)
+
+    def _start(
+        self, state: RobotState, pose: Pose2D, twist: Twist, around: Surroundings, wish: Wish
+    ) -> tuple[Start, float]:
+        """Where a way past movers begins, and the map's speed limit (m/s) there."""
+        ahead = np.arange(len(wish.path), dtype=np.float64)
+        pace = self._profile.along(self._s + PATH_SPACING * ahead)
+        path = np.column_stack([wish.path, pace])
+        limit = float(self.chart.speed_limit(np.array([pose[:2]]))[0])
+        start = Start(pose, twist, around, path, self._margins(state), self.config.latency)
+        return start, limit
 
     def _hoped(self, state: RobotState, around: Surroundings) -> Surroundings | None:
         """After long in one place, the surroundings with what is out of sight as the chart has it."""

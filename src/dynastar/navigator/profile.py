@@ -44,6 +44,10 @@ class SpeedProfile:
         """The speed (m/s) at ``s`` metres along the path."""
         return min(float(np.interp(s, self._arc, self._speed)), self._v_max)
 
+    def along(self, s: Floats) -> Floats:
+        """The speeds (n,) m/s at ``s`` (n,) metres along the path."""
+        return np.minimum(np.interp(s, self._arc, self._speed), self._v_max)
+
 
 def points(path: Path) -> Floats:
     """The points (n, 2) of a path that a profile is made at."""

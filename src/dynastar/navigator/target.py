@@ -8,7 +8,7 @@ import numpy.typing as npt
 from dynastar.compiled import njit
 from dynastar.dwa import Surroundings
 from dynastar.dwa.clearance_kernels import centre_clearance
-from dynastar.geometry import wrap_angle
+from dynastar.geometry import Pose2D, wrap_angle
 from dynastar.path import Path
 
 SPACING = 0.1  # m between the points of the path that are tried
@@ -81,3 +81,9 @@ def leading_away(
     off = wrap_angle(math.atan2(target[1] - y, target[0] - x) - away)
     heading = away + max(-AWAY, min(AWAY, off))
     return x + NEAREST * math.cos(heading), y + NEAREST * math.sin(heading)
+
+
+def at_bearing(pose: Pose2D, bearing: float) -> tuple[float, float]:
+    """A target (m) two metres away at ``bearing`` (rad) off the pose's heading."""
+    theta = pose.theta + bearing
+    return pose.x + 2.0 * math.cos(theta), pose.y + 2.0 * math.sin(theta)

@@ -51,6 +51,7 @@ def _pass(scenario: Scenario) -> None:
     """The ways past a walker, which few missions need."""
     pose, twist = Pose2D(1.0, 1.0, 0.0), Twist(0.0, 0.0)
     path = Path(np.array([(1.0, 1.0), (3.0, 1.0)])).resampled(0.0, 2.0, 0.1)
+    path = np.column_stack([path, np.ones(len(path))])
     walker = np.array([[2.0, 2.0, -0.5, -0.5, 0.3, 0.7]])
     passing, margins = Passing(scenario.robot, 0.1), Margins(0.1, 0.1, 0.1)
     layer = ObstacleLayer()
