@@ -7,7 +7,17 @@ from hypothesis import strategies as st
 
 from dynastar.clearance import distance_field
 from dynastar.dwa import Surroundings
-from dynastar.navigator.target import AWAY, NEAREST, farthest_visible, leading_away, local_target
+from dynastar.geometry import Pose2D
+from dynastar.navigator.target import (
+    AWAY,
+    BEHIND,
+    NEAREST,
+    at_bearing,
+    farthest_visible,
+    leading_away,
+    local_target,
+    on_one_side,
+)
 from dynastar.path import Path
 
 A = 0.05
@@ -99,3 +109,15 @@ def test_leading_away_gains_clearance_towards_the_target(bearing):
 def test_between_two_walls_as_near_the_target_stays():
     lane = around((0.0, 0.0, 6.0, 2.0), (0.0, 2.5, 6.0, 6.0))
     assert leading_away((5.0, 2.25), (3.0, 2.25), lane) == (5.0, 2.25)
+
+
+@pytest.mark.parametrize(("omega", "side"), [(0.3, 1.0), (-0.3, -1.0), (0.0, 1.0)])
+def test_what_lies_behind_is_turned_to_on_the_side_that_the_robot_turns_to(omega, side):
+    pose = Pose2D(1.0, 2.0, 0.5)
+    for off in (3.0, -3.0):
+        target, bearing = on_one_side(at_bearing(pose, off), pose, omega)
+        assert bearing == side * BEHIND
+        assert target == pytest.approx(at_bearing(pose, bearing))
+    for off in (2.0, -2.0):
+        ahead = at_bearing(pose, off)
+        assert on_one_side(ahead, pose, omega) == (ahead, pytest.approx(off))

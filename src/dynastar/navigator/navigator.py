@@ -21,7 +21,7 @@ from dynastar.navigator.progress import Progress
 from dynastar.navigator.recovery import Recovery
 from dynastar.navigator.senses import Senses
 from dynastar.navigator.status import RobotState, Status
-from dynastar.navigator.target import at_bearing, leading_away, local_target
+from dynastar.navigator.target import at_bearing, leading_away, local_target, on_one_side
 from dynastar.obstacles import MovingObstacle
 from dynastar.path import Path
 from dynastar.robot import Robot
@@ -30,7 +30,6 @@ from dynastar.scan import LaserScan
 log = logging.getLogger("dynastar")
 
 FASTER = 1e-3  # m/s by which going on past movers is worth more than what the window chose
-BEHIND = 2.8  # rad off the heading from which a target is as good as behind
 OUT_OF_SIGHT = "the path is out of sight"
 PATH_SPACING = 0.1  # m between the points of the path that simi compares with
 
@@ -210,7 +209,6 @@ class Navigator:
         assert self._path is not None
         config, now = self.config, state.stamp
         pose, twist = self._commands.when_one_acts(state)
-        left = self._path.length - self._s
         goal = self._goals[0]
         tight = self.robot.footprint.inscribed + self.margins.standing
         clearances = (tight + config.comfort, tight)
@@ -226,18 +224,13 @@ class Navigator:
         if spare < 0.25 * config.layer.resolution:
             target = leading_away(target, (state.pose.x, state.pose.y), around)
         near = math.hypot(goal.x - state.pose.x, goal.y - state.pose.y) <= config.goal_tolerance
-        aligning = near and goal.heading is not None
-        if aligning:
-            assert goal.heading is not None
-            target = at_bearing(state.pose, goal.heading - state.pose.theta)
-        bearing = wrap_angle(
-            math.atan2(target[1] - state.pose.y, target[0] - state.pose.x) - state.pose.theta
-        )
+        heading = goal.heading if near else None
+        aligning = heading is not None
+        if heading is not None:
+            target = at_bearing(state.pose, heading - state.pose.theta)
+        target, bearing = on_one_side(target, state.pose, state.twist.omega)
         self.progress.note_sight(now, seen)
-        if abs(bearing) > BEHIND:  # on the side that it turns to already, or it would dither
-            bearing = BEHIND if state.twist.omega >= 0.0 else -BEHIND
-            target = at_bearing(state.pose, bearing)
-        if self.progress.note(now, left, bearing):
+        if self.progress.note(now, self._path.length - self._s, bearing):
             self.recovery.progressed(now)
         careful = self.lookout.speed(
             now, state.twist.v, self._wary, self._path, self._s,

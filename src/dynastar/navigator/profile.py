@@ -42,7 +42,7 @@ class SpeedProfile:
 
     def at(self, s: float) -> float:
         """The speed (m/s) at ``s`` metres along the path."""
-        return min(float(np.interp(s, self._arc, self._speed)), self._v_max)
+        return float(self.along(np.array(s)))
 
     def along(self, s: Floats) -> Floats:
         """The speeds (n,) m/s at ``s`` (n,) metres along the path."""

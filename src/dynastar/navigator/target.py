@@ -14,6 +14,7 @@ from dynastar.path import Path
 SPACING = 0.1  # m between the points of the path that are tried
 AWAY = math.radians(65.0)  # off the straight way from what is too near
 NEAREST = 0.4  # m, a target to steer by is further
+BEHIND = 2.8  # rad off the heading from which a target is as good as behind
 
 
 @njit(cache=True)
@@ -81,6 +82,20 @@ def leading_away(
     off = wrap_angle(math.atan2(target[1] - y, target[0] - x) - away)
     heading = away + max(-AWAY, min(AWAY, off))
     return x + NEAREST * math.cos(heading), y + NEAREST * math.sin(heading)
+
+
+def on_one_side(
+    target: tuple[float, float], pose: Pose2D, omega: float
+) -> tuple[tuple[float, float], float]:
+    """The target and its bearing (rad) off the pose's heading.
+
+    Behind the robot it is taken to lie on the side that it turns to already, or it would dither.
+    """
+    bearing = wrap_angle(math.atan2(target[1] - pose.y, target[0] - pose.x) - pose.theta)
+    if abs(bearing) <= BEHIND:
+        return target, bearing
+    bearing = BEHIND if omega >= 0.0 else -BEHIND
+    return at_bearing(pose, bearing), bearing
 
 
 def at_bearing(pose: Pose2D, bearing: float) -> tuple[float, float]:
