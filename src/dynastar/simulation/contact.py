@@ -24,13 +24,17 @@ class Solids:
         polygons = [_polygon(ring, f"obstacle {number}") for number, ring in enumerate(obstacles)]
         border = _box_corners(np.array([[0, 0, grid.rows, grid.columns]]))
         self._grid = grid
-        self._tree = shapely.STRtree(
-            [
-                *shapely.polygons(_placed(_box_corners(occupied_runs(grid)), grid)),
-                shapely.linearrings(_placed(border, grid)[0]),
-                *polygons,
-            ]
-        )
+        self._shapes = [
+            *shapely.polygons(_placed(_box_corners(occupied_runs(grid)), grid)),
+            shapely.linearrings(_placed(border, grid)[0]),
+            *polygons,
+        ]
+        self._tree = shapely.STRtree(self._shapes)
+
+    def add(self, ring: Floats, what: str = "an obstacle") -> None:
+        """Adds a polygon (k, 2), metres; ScenarioError, which calls it ``what``, if it is none."""
+        self._shapes.append(_polygon(ring, what))
+        self._tree = shapely.STRtree(self._shapes)
 
     def gap(self, pose: Pose2D, footprint: Footprint) -> float:
         """Metres from the footprint at ``pose`` to anything solid; <= 0 touching or off the map."""

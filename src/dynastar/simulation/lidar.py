@@ -42,6 +42,10 @@ class LidarSimulator:
         self._range_bound = range_bound
         self._random = random or np.random.default_rng(0)
 
+    def add(self, ring: Floats) -> None:
+        """Adds the edges of a polygon (k, 2), metres."""
+        self._edges = np.concatenate([self._edges, np.hstack([ring, np.roll(ring, -1, axis=0)])])
+
     def scan(self, pose: Pose2D, stamp: float, discs: Floats = NO_DISCS) -> LaserScan:
         """What the lidar of a robot at ``pose`` reads; ``discs`` (m, 3) are x, y, radius in metres.
 

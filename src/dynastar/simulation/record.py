@@ -91,7 +91,7 @@ class Recorder:
             states=np.array(self._states, dtype=np.str_),
             movers=np.array(self._movers).reshape(len(self._rows), -1, 2),
             mover_radii=np.array([mover.radius for mover in scenario.movers], dtype=np.float64),
-            obstacles=tuple(np.asarray(ring, dtype=np.float64) for ring in scenario.obstacles),
+            obstacles=self._world.obstacles,
             plans=tuple(self._plans),
             events=tuple(self._events),
             outcome=outcome,
@@ -123,4 +123,6 @@ def described(scenario: Scenario, seed: int) -> dict[str, Any]:
     more = ("time_limit", "unknown", "preset", "navigator", "source")
     movers = () if scenario.source else tuple(vars(mover) for mover in scenario.movers)
     data = {name: plain(getattr(scenario, name)) for name in (*names, *more)}
-    return data | {"robot": scenario.robot.name, "seed": seed, "movers": plain(movers)}
+    faults = [fault.described() for fault in scenario.faults]
+    more_data = {"robot": scenario.robot.name, "seed": seed, "movers": plain(movers)}
+    return data | more_data | ({"faults": faults} if faults else {})

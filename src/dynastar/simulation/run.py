@@ -13,6 +13,7 @@ from dynastar.episode import Episode
 from dynastar.errors import InputError, PlanningError, ScenarioError
 from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import stopping_time
+from dynastar.simulation.faults import FaultInjector
 from dynastar.simulation.record import Recorder
 from dynastar.simulation.scenario import Scenario
 from dynastar.simulation.warm_up import warm_up
@@ -37,7 +38,7 @@ class Controller(Protocol):
         """Takes the goals, in order."""
 
     def command(self, state: Any, scan: Any) -> Twist:
-        """The twist to drive, given a RobotState and a LaserScan."""
+        """The twist to drive, given a RobotState and a LaserScan, or None where a fault lost it."""
 
 
 def run(
@@ -81,6 +82,7 @@ def drive(
     controller = (navigator or Navigator)(scenario.grid, scenario.robot, config)
     controller.set_goal(scenario.goals)
     recorder, referee = Recorder(scenario, world), Referee(scenario, config)
+    faults = FaultInjector(scenario.faults, world, controller, recorder.event, seed)
     ending, ticks = None, 0
     with tqdm(
         total=scenario.time_limit,
@@ -92,8 +94,9 @@ def drive(
         bar_format="{desc}: {n:.1f} of at most {total:.0f} simulated s [{elapsed}]",
     ) as bar:
         while ending is None:
-            state = RobotState(world.time, world.sensed_pose(), world.twist)
-            scan = world.scan()
+            faults.begin()
+            true_state = RobotState(world.time, world.sensed_pose(), world.twist)
+            state, scan = faults.sensed(true_state, world.scan())
             began = perf_counter()
             command = Twist(*controller.command(state, scan))
             command_ms = 1e3 * (perf_counter() - began)
@@ -104,7 +107,7 @@ def drive(
             ending = referee.ended(world, status)
             if ending is None:
                 ticks += 1
-                world.step(command, ticks * config.period - world.time)
+                world.step(faults.carried(command), ticks * config.period - world.time)
                 bar.update(config.period)
                 ending = referee.touched(world)
         bar.refresh()

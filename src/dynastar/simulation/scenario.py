@@ -11,6 +11,7 @@ from dynastar.config import Field
 from dynastar.geometry import Goal
 from dynastar.grid import OccupancyGrid, Unknown
 from dynastar.robot import Robot
+from dynastar.simulation.faults import Fault
 
 Floats = npt.NDArray[np.float64]
 AfterLast = Literal["loop", "back_and_forth", "stay", "vanish"]
@@ -44,8 +45,9 @@ class Scenario:
     """A mission in a world; ``grid`` is what the robot knows, ``world`` what is true (None: the same).
 
     ``start`` is (x, y, heading), heading None for "towards the first point of the path".
-    ``obstacles`` are simple polygons (k, 2) in metres that no map has. ``navigator`` overrides
-    settings of the preset, as nested tables. ``source`` is what the scenario was read from.
+    ``obstacles`` are simple polygons (k, 2) in metres that no map has. ``faults`` strike during the
+    run. ``navigator`` overrides settings of the preset, as nested tables. ``source`` is what the
+    scenario was read from.
     """
 
     name: str
@@ -56,6 +58,7 @@ class Scenario:
     world: OccupancyGrid | None = None
     obstacles: tuple[Floats, ...] = ()
     movers: tuple[Mover, ...] = ()
+    faults: tuple[Fault, ...] = ()
     noise: Noise = Noise()
     latency: float = 0.0
     goal_tolerance: float = 0.25

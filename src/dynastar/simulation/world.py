@@ -50,6 +50,7 @@ class World:
             scenario.noise.range_bound,
             np.random.default_rng(senses[0]),
         )
+        self.obstacles = tuple(np.asarray(ring, dtype=np.float64) for ring in scenario.obstacles)
         self._pose_random = np.random.default_rng(senses[1])
         self._commands: deque[tuple[float, Twist]] = deque()
         self._wanted = Twist(0.0, 0.0)
@@ -84,6 +85,18 @@ class World:
             self.pose.y + noise.pose_bound * error[1],
             wrap_angle(self.pose.theta + noise.heading_bound * error[2]),
         )
+
+    def add_obstacle(self, ring: Floats) -> None:
+        """Puts another polygon (k, 2), metres, into the true world; ScenarioError if it is none."""
+        self._solids.add(ring, f"obstacle {len(self.obstacles)}")
+        self._lidar.add(ring)
+        self.obstacles = (*self.obstacles, ring)
+        self._look(self.twist, thoroughly=True)
+
+    def place(self, pose: Pose2D) -> None:
+        """Puts the robot somewhere else; its speeds stay."""
+        self.pose = pose
+        self._look(self.twist, thoroughly=True)
 
     def step(self, command: Twist, duration: float) -> None:
         """Takes in ``command`` and lets ``duration`` seconds pass, or less where a contact ends it.
