@@ -1,0 +1,1 @@
+"""Suites in which a robot drives, a module each."""

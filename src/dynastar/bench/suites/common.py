@@ -1,0 +1,68 @@
+"""What the suites on public data share: finding the data, shapes, and who touched whom."""
+
+import math
+import os
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+
+from dynastar.bench.runner import Options
+from dynastar.episode import Episode
+from dynastar.errors import DataError
+from dynastar.geometry import Pose2D
+from dynastar.grid import GridFrame, OccupancyGrid
+from dynastar.robot import Footprint
+from dynastar.simulation.contact import placed_footprint
+
+Floats = npt.NDArray[np.float64]
+
+TOUCHING = 0.02  # m, the largest gap at which a mover counts as the one that was touched
+DISC_SIDES = 12
+
+
+def folder_with(options: Options, suite: str, name: str, pattern: str) -> Path:
+    """The folder ``name``, or the one named, that has files of a glob ``pattern``.
+
+    ``--data`` is that folder or the one above it, or else $DYNASTAR_DATA is; else DataError.
+    """
+    named = options.data or os.environ.get("DYNASTAR_DATA")
+    if not named:
+        raise DataError(f"the suite {suite} reads data: give --data DIR or set DYNASTAR_DATA")
+    for folder in (Path(named) / name, Path(named)):
+        if any(folder.glob(pattern)):
+            return folder
+    raise DataError(
+        f"{named} has no {name}/{pattern}, and no {pattern}: the suite {suite} reads these"
+    )
+
+
+def empty_map(x: tuple[float, float], y: tuple[float, float], resolution: float) -> OccupancyGrid:
+    """A map where nothing is occupied, over ranges of x and y in metres."""
+    rows = math.ceil((y[1] - y[0]) / resolution - 1e-9)
+    columns = math.ceil((x[1] - x[0]) / resolution - 1e-9)
+    return OccupancyGrid(
+        np.zeros((rows, columns), dtype=np.int8), GridFrame(resolution, x[0], y[0])
+    )
+
+
+def disc_polygon(x: float, y: float, radius: float) -> Floats:
+    """The regular polygon (12, 2) whose sides touch a disc from outside."""
+    angles = np.arange(DISC_SIDES) * math.tau / DISC_SIDES
+    reach = radius / math.cos(math.pi / DISC_SIDES)
+    return np.column_stack([x + reach * np.cos(angles), y + reach * np.sin(angles)])
+
+
+def touched_mover(episode: Episode) -> int | None:
+    """The number of the mover that the robot was in contact with at the end; None for none."""
+    if not episode.contact or len(episode.mover_radii) == 0:
+        return None
+    footprint = Footprint.polygon(episode.footprint.tolist()) if len(episode.footprint) else None
+    shape = placed_footprint(
+        Pose2D(*episode.trajectory.poses[-1]), footprint or Footprint.disc(episode.radius)
+    )
+    gaps = shapely.distance(shape, shapely.points(np.nan_to_num(episode.movers[-1], nan=1e9)))
+    gaps = gaps - episode.mover_radii - (0.0 if footprint else episode.radius)
+    nearest = int(np.argmin(gaps))
+    return nearest if gaps[nearest] <= TOUCHING else None
