@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
-from scripted import Scripted
 
 from dynastar.bench import Mission, Options, driven
 from dynastar.bench.suites import barn
@@ -16,6 +15,7 @@ from dynastar.bench.suites.challenge import challenge_run, challenge_score
 from dynastar.errors import DataError
 from dynastar.io.barn import load_barn_worlds, official_length, read_barn_world
 from dynastar.simulation.run import drive
+from scripted import Scripted
 
 MODEL = """<model name='{name}'><static>1</static>
   <pose frame=''>{x} {y} 0.0 0 0 0</pose>

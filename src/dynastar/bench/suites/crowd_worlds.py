@@ -1,9 +1,10 @@
 """Recorded pedestrians as a world: where the robot enters, when it starts, and who walks there.
 
-The recordings begin and end tracks where the camera's view does, and some in the middle of it. A
-pedestrian therefore walks in: before its first key it comes along its first velocity for up to 3 s, as
-far as the map is free for it. So nobody appears next to the robot out of nothing, but for a pedestrian
-whose walk-in begins there.
+The recordings begin tracks where the camera's view does, and many in the middle of it. So that nobody
+appears next to the robot out of nothing, each pedestrian walks in from off the map: before its first
+key it comes at its first velocity, straight, and for 20 s at most. Where an occupied cell is in the
+way, the direction it comes from is turned by as little as is needed, up to 60 degrees; where that does
+not help, it walks in as far as it can.
 """
 
 import math
@@ -24,7 +25,8 @@ Floats = npt.NDArray[np.float64]
 Point = tuple[float, float]
 
 RADIUS = 0.25  # m, of a pedestrian
-WALK_IN = 3.0  # s
+WALK_IN = 20.0  # s at most
+TURNS = np.radians([0.0, *(s * a for a in range(5, 61, 5) for s in (1, -1))])  # tried in turn
 FIRST_STEPS = 2  # samples over which the first velocity is taken
 BIN = 0.5  # m, of the raster of where pedestrians walk
 WALKED_BY = 3  # pedestrians, from which on a bin counts
@@ -108,16 +110,34 @@ def with_walk_in(recording: Recording, grid: OccupancyGrid) -> Recording:
     for keys in recording.tracks:
         later = keys[min(FIRST_STEPS, len(keys) - 1)]
         velocity = (later[1:] - keys[0, 1:]) / (later[0] - keys[0, 0])
-        for seconds in np.arange(0.1, WALK_IN + 1e-6, 0.1):
-            x, y = keys[0, 1:] - seconds * velocity
-            if grid.contains(x, y) and field[grid.world_to_cell(x, y)] < RADIUS:
-                seconds -= 0.1
-                break
+        seconds, way = _walk_in(grid, field, keys[0, 1:], velocity)
         if seconds > 0.05:
-            first = [keys[0, 0] - seconds, *(keys[0, 1:] - seconds * velocity)]
-            keys = np.vstack([first, keys])
+            keys = np.vstack([[keys[0, 0] - seconds, *(keys[0, 1:] - seconds * way)], keys])
         tracks.append(keys)
     return recording._replace(tracks=tuple(tracks))
+
+
+def _walk_in(
+    grid: OccupancyGrid, field: npt.NDArray[np.float32], first: Floats, velocity: Floats
+) -> tuple[float, Floats]:
+    """How long a pedestrian walks in, s, and at which velocity (2,)."""
+    times = np.arange(0.1, WALK_IN + 0.05, 0.1)
+    best, best_way = 0.0, velocity
+    for angle in TURNS:
+        cos, sin = math.cos(angle), math.sin(angle)
+        way = np.array(
+            [cos * velocity[0] - sin * velocity[1], sin * velocity[0] + cos * velocity[1]]
+        )
+        cells = np.floor(grid.frame.points_to_grid(first - times[:, np.newaxis] * way)).astype(int)
+        on_map = ((cells >= 0) & (cells < field.shape)).all(axis=1)
+        stopped = np.zeros(len(times), bool)
+        stopped[on_map] = field[tuple(cells[on_map].T)] < RADIUS
+        ends = np.flatnonzero(stopped | ~on_map)
+        if len(ends) == 0 or not stopped[ends[0]]:
+            return float(times[ends[0]] if len(ends) else times[-1]), way
+        if times[ends[0]] - 0.1 > best:
+            best, best_way = float(times[ends[0]] - 0.1), way
+    return best, best_way
 
 
 def _walked(recording: Recording) -> Floats:
