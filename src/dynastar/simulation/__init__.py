@@ -2,8 +2,19 @@
 
 from dynastar.simulation.faults import Fault
 from dynastar.simulation.run import Controller, drive, run
-from dynastar.simulation.scenario import Mover, Noise, Scenario
+from dynastar.simulation.scenario import Mover, Noise, Pedestrian, Scenario
 from dynastar.simulation.warm_up import warm_up
 from dynastar.simulation.world import World
 
-__all__ = ["Controller", "Fault", "Mover", "Noise", "Scenario", "World", "drive", "run", "warm_up"]
+__all__ = [
+    "Controller",
+    "Fault",
+    "Mover",
+    "Noise",
+    "Pedestrian",
+    "Scenario",
+    "World",
+    "drive",
+    "run",
+    "warm_up",
+]

@@ -48,17 +48,22 @@ class Movers:
 
     def gap(self, time: float, pose: Pose2D, footprint: Footprint) -> float:
         """Metres from the footprint at ``pose`` to a mover; inf without any, <= 0 touching."""
-        if len(self.radii) == 0:
-            return math.inf
-        return kernels.disc_gap(
-            pose.x,
-            pose.y,
-            pose.theta,
-            footprint.vertices,
-            footprint.circumscribed,
-            self.at(time),
-            self.radii,
-        )
+        return gap_to_discs(pose, footprint, self.at(time), self.radii)
+
+
+def gap_to_discs(pose: Pose2D, footprint: Footprint, centres: Floats, radii: Floats) -> float:
+    """Metres from the footprint at ``pose`` to discs (m, 2) with radii (m,); inf without any."""
+    if len(radii) == 0:
+        return math.inf
+    return kernels.disc_gap(
+        pose.x,
+        pose.y,
+        pose.theta,
+        footprint.vertices,
+        footprint.circumscribed,
+        centres,
+        radii,
+    )
 
 
 def _check(mover: Mover, what: str) -> None:

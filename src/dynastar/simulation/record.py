@@ -90,7 +90,7 @@ class Recorder:
             command_ms=table[:, 9],
             states=np.array(self._states, dtype=np.str_),
             movers=np.array(self._movers).reshape(len(self._rows), -1, 2),
-            mover_radii=np.array([mover.radius for mover in scenario.movers], dtype=np.float64),
+            mover_radii=np.array(self._world.mover_radii),
             obstacles=self._world.obstacles,
             plans=tuple(self._plans),
             events=tuple(self._events),
@@ -125,4 +125,6 @@ def described(scenario: Scenario, seed: int) -> dict[str, Any]:
     data = {name: plain(getattr(scenario, name)) for name in (*names, *more)}
     faults = [fault.described() for fault in scenario.faults]
     more_data = {"robot": scenario.robot.name, "seed": seed, "movers": plain(movers)}
+    if scenario.crowd:
+        more_data["crowd"] = [plain(vars(pedestrian)) for pedestrian in scenario.crowd]
     return data | more_data | ({"faults": faults} if faults else {})

@@ -41,12 +41,27 @@ class Mover:
 
 
 @dataclass(frozen=True, eq=False)
+class Pedestrian:
+    """A simulated pedestrian: a disc that walks to its waypoints in turn, over and over.
+
+    It starts at ``start`` (x, y) m, heads for ``waypoints`` (k >= 2, 2) m at ``speed`` (m/s) at most,
+    and avoids walls, other pedestrians and the robot.
+    """
+
+    radius: float
+    speed: float
+    start: tuple[float, float]
+    waypoints: Floats
+
+
+@dataclass(frozen=True, eq=False)
 class Scenario:
     """A mission in a world; ``grid`` is what the robot knows, ``world`` what is true (None: the same).
 
     ``start`` is (x, y, heading), heading None for "towards the first point of the path".
     ``obstacles`` are simple polygons (k, 2) in metres that no map has. ``faults`` strike during the
-    run. ``navigator`` overrides settings of the preset, as nested tables. ``source`` is what the
+    run. ``crowd`` are pedestrians who react to the robot (needs the extra ``pedestrians``).
+    ``navigator`` overrides settings of the preset, as nested tables. ``source`` is what the
     scenario was read from.
     """
 
@@ -58,6 +73,7 @@ class Scenario:
     world: OccupancyGrid | None = None
     obstacles: tuple[Floats, ...] = ()
     movers: tuple[Mover, ...] = ()
+    crowd: tuple[Pedestrian, ...] = ()
     faults: tuple[Fault, ...] = ()
     noise: Noise = Noise()
     latency: float = 0.0

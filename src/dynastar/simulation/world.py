@@ -12,8 +12,9 @@ from dynastar.geometry import Pose2D, Twist, wrap_angle
 from dynastar.robot import Limits, arc, slew
 from dynastar.scan import LaserScan
 from dynastar.simulation.contact import Solids
+from dynastar.simulation.crowd import Crowd
 from dynastar.simulation.lidar import LidarSimulator
-from dynastar.simulation.movers import Movers
+from dynastar.simulation.movers import Movers, gap_to_discs
 from dynastar.simulation.noise import cut_gaussian
 from dynastar.simulation.scenario import Scenario
 
@@ -43,6 +44,13 @@ class World:
         self._scenario, self._robot = scenario, scenario.robot
         self._solids = Solids(grid, scenario.obstacles)
         self._movers = Movers(scenario.movers)
+        self._crowd = (
+            Crowd(scenario.crowd, grid, scenario.obstacles, scenario.robot.footprint, seed)
+            if scenario.crowd
+            else None
+        )
+        crowd_radii = [pedestrian.radius for pedestrian in scenario.crowd]
+        self.mover_radii = np.concatenate([self._movers.radii, crowd_radii])
         self._lidar = LidarSimulator(
             scenario.robot.lidar,
             grid,
@@ -68,12 +76,13 @@ class World:
 
     @property
     def movers(self) -> Floats:
-        """Where the movers are now, (m, 2) metres, NaN for those that are not there."""
-        return self._movers.at(self.time)
+        """Where movers and pedestrians are now, (m, 2) metres, NaN for those that are not there."""
+        scripted = self._movers.at(self.time)
+        return scripted if self._crowd is None else np.vstack([scripted, self._crowd.at(self.time)])
 
     def scan(self) -> LaserScan:
         """What the lidar reads now."""
-        discs = np.column_stack([self.movers, self._movers.radii])
+        discs = np.column_stack([self.movers, self.mover_radii])
         return self._lidar.scan(self.pose, self.time, discs)
 
     def sensed_pose(self) -> Pose2D:
@@ -149,7 +158,11 @@ class World:
             self._solid_gap = self._solids.gap(self.pose, footprint)
             self._travelled = 0.0
             self.clearance = min(self.clearance, self._solid_gap)
-        gap = self._movers.gap(self.time, self.pose, footprint)
+        if self._crowd is not None:
+            self._crowd.advance(self.time, self.pose)
+        gap = math.inf
+        if len(self.mover_radii):
+            gap = gap_to_discs(self.pose, footprint, self.movers, self.mover_radii)
         self.clearance = max(0.0, min(self.clearance, gap))
         if self.clearance <= 0.0:
             at_rest = abs(twist.v) < RESTING and abs(twist.omega) < RESTING
