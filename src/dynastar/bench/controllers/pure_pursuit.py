@@ -1,0 +1,136 @@
+"""Regulated pure pursuit [Macenski2023] on a replanned path: the classic that stops for what is ahead."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.bench.controllers.base import PathController
+from dynastar.bench.controllers.costmap import Surroundings
+from dynastar.geometry import Pose2D, Twist, wrap_angle
+from dynastar.navigator import RobotState
+from dynastar.robot import arc
+from dynastar.scan import LaserScan
+
+Floats = npt.NDArray[np.float64]
+
+
+class Settings(NamedTuple):
+    """The settings of the controller, as Nav2 names them where it has them."""
+
+    lookahead_time: float = 1.0  # s
+    lookahead_low: float = 0.3  # m
+    lookahead_high: float = 1.2  # m
+    rotate_from: float = 0.785  # rad off the carrot, from which it turns on the spot
+    radius_low: float = 0.9  # m, arcs tighter than that are slowed down for
+    proximity: float = 0.4  # m to what is blocked, below which it slows down
+    speed_low: float = 0.15  # fraction of v_max that curvature and proximity leave
+    approach: float = 0.6  # m before the goal, where it begins to slow down
+    approach_low: float = 0.05  # m/s
+    horizon: float = 1.0  # s, how far ahead contact is looked for, at least to a stop
+    braking: float = 0.7  # fraction of the robot's braking that it counts on
+
+
+class PurePursuit(PathController):
+    """Drives the arc to a point ahead on the path, slower in bends, near things and near the goal.
+
+    The path comes from the map and what the lidar has seen, and is planned anew every second.
+    Contact is looked for along the arc: it goes no faster than it can stop for, and stops where the
+    way is not free. Everything counts as static. Where the arc to the carrot is not free, nearer
+    carrots are tried.
+    """
+
+    settings = Settings()
+
+    def follow(self, state: RobotState, scan: LaserScan) -> Twist | None:
+        """The twist along the arc to the carrot; None where nothing ahead is free."""
+        del scan
+        path, options, limits = self.route.path, self.settings, self.robot.limits
+        assert path is not None
+        pose, v = state.pose, max(state.twist.v, 0.0)
+        stop = v**2 / (2.0 * options.braking * limits.v_brake)
+        late = v * (self.config.period + self.config.latency)
+        reach = max(options.horizon * limits.v_max, stop + late) + options.lookahead_high
+        around = self.costmap.surroundings(
+            pose, min(reach, 4.0) + options.proximity + self.robot.footprint.circumscribed
+        )
+        lookahead = min(
+            max(options.lookahead_time * v, options.lookahead_low), options.lookahead_high
+        )
+        off, curvature, free = self._best_arc(pose, lookahead, reach, around)
+        if abs(off) > options.rotate_from:
+            return self._rotated(pose, off, around)
+        room = free - late - 0.02
+        if room <= 0.0:
+            return None
+        speed = min(
+            self._regulated(pose, curvature, around),
+            math.sqrt(2.0 * options.braking * limits.v_brake * room),
+            limits.omega_max / max(abs(curvature), 1e-9),
+        )
+        left = path.length - self.route.s
+        if left < options.approach:
+            speed = min(speed, max(limits.v_max * left / options.approach, options.approach_low))
+        # The drive ramps up: the arc belongs to the speed it will have.
+        ramp = min(speed, self._last.v + limits.v_accel * self.config.period)
+        return Twist(speed, max(ramp, 0.0) * curvature)
+
+    def _best_arc(
+        self, pose: Pose2D, lookahead: float, reach: float, around: Surroundings
+    ) -> tuple[float, float, float]:
+        """Bearing of the carrot (rad), curvature (1/m) of the arc to it, and its free length (m).
+
+        Of carrots nearer and nearer, the first whose arc is free that far; else the freest.
+        """
+        path, best = self.route.path, None
+        assert path is not None
+        while True:
+            x, y = path.at(self.route.s + lookahead)
+            off = wrap_angle(math.atan2(y - pose.y, x - pose.x) - pose.theta)
+            distance = max(math.dist(pose[:2], (x, y)), 1e-3)
+            curvature = 2.0 * math.sin(off) / distance
+            free = self._free_length(pose, curvature, min(reach, 4.0), around)
+            if best is None or free > best[2]:
+                best = off, curvature, free
+            if free >= distance or lookahead <= self.settings.lookahead_low:
+                return best if free < distance else (off, curvature, free)
+            lookahead = max(0.7 * lookahead, self.settings.lookahead_low)
+
+    def _free_length(
+        self, pose: Pose2D, curvature: float, reach: float, around: Surroundings
+    ) -> float:
+        """Metres along an arc up to the first contact, at most ``reach`` and two thirds of a turn."""
+        if abs(curvature) > 1e-6:
+            reach = min(reach, 4.0 / abs(curvature))
+        steps = np.arange(0.0, reach + 0.05, 0.05)
+        half = 0.5 * curvature * steps
+        chord = steps * np.sinc(half / np.pi)
+        poses = np.column_stack(
+            [
+                pose.x + chord * np.cos(pose.theta + half),
+                pose.y + chord * np.sin(pose.theta + half),
+                pose.theta + 2.0 * half,
+            ]
+        )
+        gaps = around.gaps(poses, self.robot.footprint)
+        touching = np.flatnonzero(gaps < min(0.0, float(gaps[0]) - 1e-6))
+        return float(steps[max(touching[0] - 1, 0)]) if len(touching) else reach
+
+    def _regulated(self, pose: Pose2D, curvature: float, around: Surroundings) -> float:
+        """The speed that curvature and proximity leave of v_max."""
+        options, fastest = self.settings, self.robot.limits.v_max
+        bend = min(1.0, 1.0 / max(abs(curvature) * options.radius_low, 1e-9))
+        gap = float(around.gaps(np.array([pose]), self.robot.footprint)[0])
+        near = min(1.0, max(gap, 0.0) / options.proximity)
+        return fastest * max(min(bend, near), options.speed_low)
+
+    def _rotated(self, pose: Pose2D, off: float, around: Surroundings) -> Twist | None:
+        """Turns on the spot towards the carrot, the other way round where that is not free."""
+        for turn in (off, off - math.copysign(math.tau, off)):
+            steps = np.linspace(0.0, turn, max(2, int(abs(turn) / 0.1) + 1))
+            turned = np.array([arc(pose, Twist(0.0, step), 1.0) for step in steps])
+            gaps = around.gaps(turned, self.robot.footprint)
+            if gaps.min() >= min(0.0, float(gaps[0]) - 1e-6):
+                return Twist(0.0, self.turning(turn))
+        return None

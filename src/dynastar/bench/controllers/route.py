@@ -1,0 +1,91 @@
+"""The global path of a controller: planned on its costmap, and planned anew every second."""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.bench.controllers.costmap import PADDING, Costmap
+from dynastar.errors import PlanningError
+from dynastar.geometry import Goal
+from dynastar.path import Path
+from dynastar.planning import GridPlanner, Plan, PlannerConfig
+from dynastar.robot import Robot
+
+Mask = npt.NDArray[np.bool_]
+
+PERIOD = 1.0  # s between two plans, as the planner of Nav2 has it
+ROOM = 0.1  # m beside the circumscribed radius that a path keeps where that is no great detour
+DETOUR = 1.5  # over the narrow path's length, the longest that the roomy path may be
+SHORTER = 0.9  # a new path replaces a clear one only where it is that much shorter
+
+
+class Route:
+    """Plans with the circumscribed radius and some room, or narrowly where that is far round."""
+
+    def __init__(self, costmap: Costmap, robot: Robot) -> None:
+        shape, config = robot.footprint, PlannerConfig(planner="auto")
+        self._costmap = costmap
+        self._narrow = shape.inscribed + PADDING
+        radii = (shape.circumscribed + ROOM, self._narrow)
+        self._planners = [GridPlanner(costmap.grid, radius, "blocked", config) for radius in radii]
+        self.mark((0, 0, costmap.blocked))
+        self.plan: Plan | None = None
+        self.s = 0.0  # m along the path, where the robot is
+        self._planned_at = -math.inf
+
+    @property
+    def path(self) -> Path | None:
+        """The path of the present plan."""
+        return None if self.plan is None else self.plan.path
+
+    def mark(self, window: tuple[int, int, Mask]) -> None:
+        """Takes over cells of the costmap that changed."""
+        for planner in self._planners:
+            planner.mark(*window)
+
+    def drop(self) -> None:
+        """Forgets the path, so that the next ``update`` plans."""
+        self.plan, self._planned_at = None, -math.inf
+
+    def update(self, here: tuple[float, float], goal: Goal, now: float) -> bool:
+        """Follows the path's progress and plans where needed; True for a new path.
+
+        Raises PlanningError where there is no path, and keeps none then.
+        """
+        blocked = False
+        if self.path is not None:
+            self.s = self.path.project(*here, low=self.s - 0.3, high=self.s + 2.0)
+            blocked = self._blocked()
+        if self.plan is not None and not blocked and now - self._planned_at < PERIOD:
+            return False
+        if blocked and now - self._planned_at < 0.2 * PERIOD:
+            return False
+        self._planned_at = now
+        try:
+            new = self._best(here, (goal.x, goal.y))
+        except PlanningError:
+            self.plan = None
+            raise
+        left = math.inf if self.path is None or blocked else self.path.length - self.s
+        if new.path.length > SHORTER * left:
+            return False
+        self.plan, self.s = new, 0.0
+        return True
+
+    def _blocked(self) -> bool:
+        assert self.path is not None
+        rest = self.path.points[self.path.arc > self.s + 1e-6]
+        if len(rest) == 0:
+            return False
+        ahead = np.vstack([self.path.at(self.s), rest])
+        return self._planners[1].path_blocked_at(ahead, 0.9 * self._narrow) is not None
+
+    def _best(self, start: tuple[float, float], goal: tuple[float, float]) -> Plan:
+        roomy, narrow = self._planners
+        plan = narrow.plan(start, goal)
+        try:
+            wide = roomy.plan(start, goal)
+        except PlanningError:
+            return plan
+        return wide if wide.path.length <= DETOUR * plan.path.length else plan
