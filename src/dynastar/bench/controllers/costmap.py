@@ -12,10 +12,10 @@ from dynastar.scan import LaserScan
 Floats = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-FINEST = 0.05  # m, size of a cell, unless the map is finer or too large
-MOST_CELLS = 4_000_000
+FINEST = 0.03  # m, size of a cell, unless the map is finer or too large
+MOST_CELLS = 800_000
 REACH = 8.0  # m, up to which beams mark and clear
-PADDING = 0.02  # m, added to the footprint where contact is looked for
+PADDING = 0.01  # m, added to the footprint where contact is looked for
 _SUBCELL = 4  # bits of a cell's fraction that polygons are drawn with
 
 
@@ -116,9 +116,13 @@ class Surroundings:
         x = poses[:, :1] + cos * discs[:, 0] - sin * discs[:, 1]
         y = poses[:, 1:2] + sin * discs[:, 0] + cos * discs[:, 1]
         cells = self._frame.points_to_grid(np.column_stack([x.ravel(), y.ravel()]))
-        index = (np.floor(cells).astype(int) - self._corner + 1).clip(
-            0, np.array(self._field.shape) - 1
-        )
-        away = self._field[index[:, 0], index[:, 1]].reshape(x.shape) - 0.5
+        # Between the centres of cells, linearly.
+        at = (cells - self._corner + 0.5).clip(0.0, np.array(self._field.shape) - 1.001)
+        row, column = np.floor(at).astype(int).T
+        up, right = (at - np.floor(at)).T
+        field = self._field
+        below = field[row, column] * (1.0 - right) + field[row, column + 1] * right
+        above = field[row + 1, column] * (1.0 - right) + field[row + 1, column + 1] * right
+        away = (below * (1.0 - up) + above * up).reshape(x.shape) - 0.5
         gaps: Floats = (away * self._frame.resolution - discs[:, 2]).min(axis=1) - PADDING
         return gaps

@@ -25,7 +25,7 @@ class Settings(NamedTuple):
     rotate_from: float = 0.785  # rad off the carrot, from which it turns on the spot
     radius_low: float = 0.9  # m, arcs tighter than that are slowed down for
     proximity: float = 0.4  # m to what is blocked, below which it slows down
-    speed_low: float = 0.15  # fraction of v_max that curvature and proximity leave
+    speed_low: float = 0.25  # m/s that curvature and proximity leave
     approach: float = 0.6  # m before the goal, where it begins to slow down
     approach_low: float = 0.05  # m/s
     horizon: float = 1.0  # s, how far ahead contact is looked for, at least to a stop
@@ -123,7 +123,7 @@ class PurePursuit(PathController):
         bend = min(1.0, 1.0 / max(abs(curvature) * options.radius_low, 1e-9))
         gap = float(around.gaps(np.array([pose]), self.robot.footprint)[0])
         near = min(1.0, max(gap, 0.0) / options.proximity)
-        return fastest * max(min(bend, near), options.speed_low)
+        return max(fastest * min(bend, near), min(options.speed_low, fastest))
 
     def _rotated(self, pose: Pose2D, off: float, around: Surroundings) -> Twist | None:
         """Turns on the spot towards the carrot, the other way round where that is not free."""

@@ -1,6 +1,7 @@
 """The global path of a controller: planned on its costmap, and planned anew every second."""
 
 import math
+from contextlib import suppress
 
 import numpy as np
 import numpy.typing as npt
@@ -15,8 +16,8 @@ from dynastar.robot import Robot
 Mask = npt.NDArray[np.bool_]
 
 PERIOD = 1.0  # s between two plans, as the planner of Nav2 has it
-ROOM = 0.1  # m beside the circumscribed radius that a path keeps where that is no great detour
-DETOUR = 1.5  # over the narrow path's length, the longest that the roomy path may be
+ROOMS = (0.3, 0.1)  # m beside the circumscribed radius that a path keeps where that is no detour
+DETOURS = (1.2, 1.5)  # over the narrow path's length, the longest that such a path may be
 SHORTER = 0.9  # a new path replaces a clear one only where it is that much shorter
 
 
@@ -27,7 +28,7 @@ class Route:
         shape, config = robot.footprint, PlannerConfig(planner="auto")
         self._costmap = costmap
         self._narrow = shape.inscribed + PADDING
-        radii = (shape.circumscribed + ROOM, self._narrow)
+        radii = (*(shape.circumscribed + room for room in ROOMS), self._narrow)
         self._planners = [GridPlanner(costmap.grid, radius, "blocked", config) for radius in radii]
         self.mark((0, 0, costmap.blocked))
         self.plan: Plan | None = None
@@ -79,13 +80,16 @@ class Route:
         if len(rest) == 0:
             return False
         ahead = np.vstack([self.path.at(self.s), rest])
-        return self._planners[1].path_blocked_at(ahead, 0.9 * self._narrow) is not None
+        return self._planners[-1].path_blocked_at(ahead, 0.9 * self._narrow) is not None
 
     def _best(self, start: tuple[float, float], goal: tuple[float, float]) -> Plan:
-        roomy, narrow = self._planners
+        *roomy, narrow = self._planners
         plan = narrow.plan(start, goal)
-        try:
-            wide = roomy.plan(start, goal)
-        except PlanningError:
-            return plan
-        return wide if wide.path.length <= DETOUR * plan.path.length else plan
+        for planner, detour in zip(roomy, DETOURS, strict=True):
+            with suppress(PlanningError):
+                wide = planner.plan(start, goal)
+                short = wide.path.length <= detour * plan.path.length
+                # From too near to something, a plan leads out without regard to its radius.
+                if short and narrow.path_blocked_at(wide.path.points, 0.99 * self._narrow) is None:
+                    return wide
+        return plan
