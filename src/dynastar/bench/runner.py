@@ -11,7 +11,7 @@ import signal
 import statistics
 import sys
 import threading
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from importlib import import_module
@@ -23,7 +23,17 @@ from tqdm import tqdm
 from dynastar.config import choose
 from dynastar.errors import DataError, InputError
 
-SUITES = {"movingai": "dynastar.bench.movingai", "paper": "dynastar.bench.paper"}
+SUITES = {
+    "movingai": "dynastar.bench.movingai",
+    "paper": "dynastar.bench.paper",
+    "barn": "dynastar.bench.suites.barn",
+    "dynabarn": "dynastar.bench.suites.dynabarn",
+    "mrpb": "dynastar.bench.suites.mrpb",
+    "crowd": "dynastar.bench.suites.crowd",
+    "maps": "dynastar.bench.suites.maps",
+    "office": "dynastar.bench.suites.office",
+    "faults": "dynastar.bench.suites.faults",
+}
 
 
 class Mission(NamedTuple):
@@ -43,6 +53,10 @@ class Options(NamedTuple):
     seed: int = 0
     preset: str = "default"
     workers: int = 1
+    ideal: bool = False
+    controller: str = "navigator"
+    settings: Mapping[str, Any] = {}
+    save_failures: Path | None = None
 
 
 class Suite(Protocol):
