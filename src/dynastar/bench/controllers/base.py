@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from dynastar.bench.controllers.costmap import Costmap
+from dynastar.bench.controllers.costmap import Costmap, Surroundings, covering
 from dynastar.bench.controllers.route import Route
 from dynastar.bench.controllers.status import Status
 from dynastar.errors import InputError, PlanningError
 from dynastar.geometry import Goal, Pose2D, Twist, wrap_angle
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import RobotState
-from dynastar.robot import Robot, slew
+from dynastar.robot import Robot, arc, slew
 from dynastar.scan import LaserScan
 
 REST = Twist(0.0, 0.0)
@@ -39,6 +39,7 @@ class PathController(ABC):
 
     def __init__(self, grid: OccupancyGrid, robot: Robot, config: Any) -> None:
         self.robot, self.config = robot, config
+        self.discs = covering(robot.footprint)
         self._goals: list[Goal] = []
         self._poses: deque[RobotState] = deque(maxlen=HISTORY)
         self._scan_stamp = -math.inf
@@ -163,7 +164,7 @@ class PathController(ABC):
             [x - steps * math.cos(theta), y - steps * math.sin(theta), np.full(len(steps), theta)]
         )
         around = self.costmap.surroundings(state.pose, 1.0 + self.robot.footprint.circumscribed)
-        gaps = around.gaps(poses, self.robot.footprint)
+        gaps = around.gaps(poses, self.discs)
         if gaps[1:].min() < min(0.0, gaps[0]):
             self._backing_until = -math.inf
             return REST
@@ -195,6 +196,16 @@ class PathController(ABC):
         changed = self.costmap.see(taken.pose, scan)
         if changed is not None:
             self.route.mark(changed)
+
+    def turned(self, pose: Pose2D, off: float, around: Surroundings) -> Twist | None:
+        """Turns on the spot by ``off`` (rad), or the other way round where that is not free."""
+        for turn in (off, off - math.copysign(math.tau, off)):
+            steps = np.linspace(0.0, turn, max(2, int(abs(turn) / 0.1) + 1))
+            turned = np.array([arc(pose, Twist(0.0, step), 1.0) for step in steps])
+            gaps = around.gaps(turned, self.discs)
+            if gaps.min() >= min(0.0, float(gaps[0]) - 1e-6):
+                return Twist(0.0, self.turning(turn))
+        return None
 
     def turning(self, off: float) -> float:
         """The turning rate (rad/s) that brakes in time to turn by ``off`` (rad)."""

@@ -1,5 +1,7 @@
 """A static costmap: the map, and what the lidar has seen since, marked and cleared beam by beam."""
 
+import math
+
 import cv2
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +18,7 @@ FINEST = 0.03  # m, size of a cell, unless the map is finer or too large
 MOST_CELLS = 800_000
 REACH = 8.0  # m, up to which beams mark and clear
 PADDING = 0.01  # m, added to the footprint where contact is looked for
+EDGE_SPACING = 0.03  # m, so that no cell slips between
 _SUBCELL = 4  # bits of a cell's fraction that polygons are drawn with
 
 
@@ -99,6 +102,21 @@ class Costmap:
         return Surroundings(self.grid, blocked, (top, left))
 
 
+def covering(footprint: Footprint) -> Floats:
+    """Discs (k, 3) of x, y and radius, metres, that a footprint is checked by.
+
+    A disc is itself; a polygon is its inscribed disc and small ones along its edge.
+    """
+    middle = np.array([[0.0, 0.0, footprint.inscribed]])
+    if footprint.is_disc:
+        return middle
+    ring = np.vstack([footprint.vertices, footprint.vertices[:1]])
+    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(ring, axis=0).T))])
+    at = np.linspace(0.0, arc[-1], math.ceil(arc[-1] / EDGE_SPACING), endpoint=False)
+    edge = np.column_stack([np.interp(at, arc, ring[:, 0]), np.interp(at, arc, ring[:, 1])])
+    return np.vstack([middle, np.column_stack([edge, np.zeros(len(edge))])])
+
+
 class Surroundings:
     """Distances (m) to what is blocked near the robot."""
 
@@ -107,11 +125,8 @@ class Surroundings:
         free = np.pad((~blocked).astype(np.uint8), 1)  # what lies outside is not free
         self._field = cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
 
-    def gaps(self, poses: Floats, footprint: Footprint) -> Floats:
-        """Metres (n,) from the footprint at poses (n, 3) to what is blocked, negative for overlap."""
-        discs = footprint.discs
-        if footprint.is_disc:
-            discs = np.array([[0.0, 0.0, footprint.circumscribed]])
+    def gaps(self, poses: Floats, discs: Floats) -> Floats:
+        """Metres (n,) from ``covering`` discs (k, 3) at poses (n, 3) to what is blocked, or less."""
         cos, sin = np.cos(poses[:, 2])[:, None], np.sin(poses[:, 2])[:, None]
         x = poses[:, :1] + cos * discs[:, 0] - sin * discs[:, 1]
         y = poses[:, 1:2] + sin * discs[:, 0] + cos * discs[:, 1]
