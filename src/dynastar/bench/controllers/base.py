@@ -20,7 +20,7 @@ from dynastar.robot import Robot, arc, slew
 from dynastar.scan import LaserScan
 
 REST = Twist(0.0, 0.0)
-SCAN_AGE = 0.5  # s, older data stop the robot
+SCAN_AGE = 0.3  # s, older data stop the robot
 CLOCKS = 0.1  # s that a scan may be ahead of the state
 HISTORY = 40  # poses kept to place late scans by
 STUCK_AFTER = 4.0  # s without progress until a recovery
@@ -63,7 +63,7 @@ class PathController(ABC):
         self._say("following", "new goal")
 
     @abstractmethod
-    def follow(self, state: RobotState, scan: LaserScan) -> Twist | None:
+    def follow(self, state: RobotState) -> Twist | None:
         """The twist wanted along ``self.route.path``; None where there is no way on for now."""
 
     def command(self, state: RobotState, scan: LaserScan | None) -> Twist:
@@ -74,18 +74,18 @@ class PathController(ABC):
         if self.status.state in ("arrived", "blocked"):
             return self._ramped(REST)
         if fault is None and state.stamp - self._scan_stamp > SCAN_AGE:
-            fault = "no usable scan"
-        if fault is not None or scan is None:
-            self._say("sensor_lost", fault or "no scan")
+            fault = f"no scan of the last {SCAN_AGE:g} s"
+        if fault is not None:
+            self._say("sensor_lost", fault)
             return self._ramped(REST)
         if not self._goals:
             self._say("arrived", "no goal")
             return self._ramped(REST)
-        return self._ramped(self._towards_goal(state, scan))
+        return self._ramped(self._towards_goal(state))
 
     # -- the mission ------------------------------------------------------------------------------
 
-    def _towards_goal(self, state: RobotState, scan: LaserScan) -> Twist:
+    def _towards_goal(self, state: RobotState) -> Twist:
         goal, pose = self._goals[0], state.pose
         if math.hypot(goal.x - pose.x, goal.y - pose.y) <= 0.9 * self.config.goal_tolerance:
             off = 0.0 if goal.heading is None else wrap_angle(goal.heading - pose.theta)
@@ -102,7 +102,7 @@ class PathController(ABC):
             return REST
         if state.stamp < self._backing_until:
             return self._back_up(state)
-        wanted = self.follow(state, scan)
+        wanted = self.follow(state)
         if wanted is None:
             self._say("waiting", "something is in the way")
         else:
@@ -180,7 +180,7 @@ class PathController(ABC):
             return "time went back"
         self._poses.append(state)
         if scan is None:
-            return None if state.stamp - self._scan_stamp <= SCAN_AGE else "no scan"
+            return None
         wrong = scan.fault(self.robot.lidar.beams)
         if wrong is None and scan.stamp > state.stamp + CLOCKS:
             wrong = "the scan is ahead of the state"

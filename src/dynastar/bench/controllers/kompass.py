@@ -12,7 +12,6 @@ from dynastar.geometry import Twist, wrap_angle
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import RobotState
 from dynastar.robot import Robot
-from dynastar.scan import LaserScan
 
 Floats = npt.NDArray[np.float64]
 
@@ -51,9 +50,8 @@ class KompassDwa(PathController):
         self._dwa, self._models = _planner(robot, self.settings)
         self._plan_id = 0
 
-    def follow(self, state: RobotState, scan: LaserScan) -> Twist | None:
+    def follow(self, state: RobotState) -> Twist | None:
         """The first twist of the best sample; None where no sample is free."""
-        del scan
         path, options, pose = self.route.path, self.settings, state.pose
         assert path is not None
         if self._plan_id != self.status.plan_id:

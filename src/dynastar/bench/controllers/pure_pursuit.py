@@ -10,7 +10,6 @@ from dynastar.bench.controllers.base import PathController
 from dynastar.bench.controllers.costmap import Surroundings
 from dynastar.geometry import Pose2D, Twist, wrap_angle
 from dynastar.navigator import RobotState
-from dynastar.scan import LaserScan
 
 Floats = npt.NDArray[np.float64]
 
@@ -46,9 +45,8 @@ class PurePursuit(PathController):
 
     settings = Settings()
 
-    def follow(self, state: RobotState, scan: LaserScan) -> Twist | None:
+    def follow(self, state: RobotState) -> Twist | None:
         """The twist along the arc to the carrot; None where nothing ahead is free."""
-        del scan
         path, options, limits = self.route.path, self.settings, self.robot.limits
         assert path is not None
         pose, v = state.pose, max(state.twist.v, 0.0)
