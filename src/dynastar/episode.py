@@ -37,8 +37,9 @@ class Episode:
     Per tick (n rows): ``trajectory`` is the truth, ``commands`` (n, 2) what was asked of the drive,
     ``clearance`` (n,) the true gap between footprint and anything in metres, ``command_ms`` (n,) the
     time a ``command`` took, ``movers`` (n, m, 2) where they truly were, ``mover_radii`` (m,),
-    ``states`` (n,) the navigator's state by name. ``obstacles`` lists the polygons (k, 2) that the
-    map did not have. ``explored_frame`` is (resolution, x, y, yaw) of the plans' explored cells.
+    ``states`` (n,) the navigator's state by name, ``limits`` (n,) what limited the speed as far as the
+    navigator says so, else "", and empty where that was not recorded. ``obstacles`` lists the polygons (k, 2) that
+    the map did not have. ``explored_frame`` is (resolution, x, y, yaw) of the plans' explored cells.
     """
 
     grid: OccupancyGrid
@@ -61,5 +62,6 @@ class Episode:
     reason: str
     contact: str
     explored_frame: tuple[float, float, float, float]
+    limits: npt.NDArray[np.str_] = field(default_factory=lambda: np.empty(0, np.str_))
     config: dict[str, Any] = field(default_factory=dict)
     scenario: dict[str, Any] = field(default_factory=dict)

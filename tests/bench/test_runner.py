@@ -141,11 +141,11 @@ def test_the_data_are_in_the_folder_or_one_below(
 POOL = """\
 import multiprocessing, os, time
 from concurrent.futures import ProcessPoolExecutor
-from dynastar.bench.runner import _settle
+from dynastar.bench.workers import settle
 
 if __name__ == "__main__":
     context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(1, context, initializer=_settle)
+    pool = ProcessPoolExecutor(1, context, initializer=settle)
     print(pool.submit(os.getpid).result(), flush=True)
     pool.submit(time.sleep, 60.0).result()
 """

@@ -77,7 +77,7 @@ def true_space(scenario: Scenario) -> OccupancyGrid:
     # The border of the map is solid: a robot touches it.
     walled = np.pad(solid, 1, constant_values=True)
     closed = distance_field(walled, fine.resolution)[1:-1, 1:-1] < radius
-    return OccupancyGrid(closed | solid, fine.frame)
+    return OccupancyGrid((closed | solid).astype(np.int8) * 100, fine.frame)
 
 
 def _shortest_length(scenario: Scenario) -> float | None:

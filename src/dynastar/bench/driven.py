@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -16,6 +16,8 @@ from dynastar.simulation import Noise, Scenario, run
 
 PERIOD = 0.05  # s between commands, and between scans
 RANGE_NOISE = 0.01  # m, bound of a range's error
+SLOW = 0.95  # of the full speed; a robot that is slower is limited by something
+UNHINDERED = ("following", "arrived", "idle")  # states that are no cause by themselves
 
 Score = Callable[[Episode], float | None]
 Extra = Callable[[Episode], Mapping[str, Any]]
@@ -51,21 +53,30 @@ def fly(
     totals are given apart (a difficulty, a recording). ``extra`` gives more keys of the row. The seed
     is the sum of the scenario's, the options' and the repeat.
     """
-    scenario = replace(
+    scenario = asked(scenario, options, repeat)
+    episode = run(scenario, navigator=controller_named(options.controller))
+    row = row_of_episode(episode, scenario, score=score, group=group)
+    if extra is not None:
+        row |= dict(extra(episode))
+    if options.observe is not None:
+        options.observe(mission, repeat, episode, row)
+    return row
+
+
+def asked(scenario: Scenario, options: Options, repeat: int) -> Scenario:
+    """The scenario with the preset, the seed and the settings that the options ask for."""
+    return replace(
         scenario,
-        preset=options.preset,
+        preset=cast(Any, options.preset),
         seed=scenario.seed + options.seed + repeat,
         navigator=merged(scenario.navigator, options.settings),
     )
-    episode = run(scenario, navigator=controller_named(options.controller))
-    row = row_of_episode(episode, scenario, score=score, group=group)
-    return row if extra is None else row | dict(extra(episode))
 
 
 def row_of_episode(
     episode: Episode, scenario: Scenario, *, score: Score | None = None, group: str = ""
 ) -> dict[str, Any]:
-    """The metrics of an episode with its group, score, time bound and ticks."""
+    """The metrics of an episode with its group, score, time bound, ticks and what limited it."""
     row: dict[str, Any] = measure(episode)._asdict()
     bound = time_bound(scenario)
     arrived = row["outcome"] == "arrived"
@@ -77,5 +88,27 @@ def row_of_episode(
         "time_ratio": row["time"] / bound if arrived and bound else None,
         "tick_ms_median": float(np.median(ticks)) if len(ticks) else None,
         "tick_ms_p99": float(np.percentile(ticks, 99)) if len(ticks) else None,
+        "limited": limited(episode, scenario.robot.limits.v_max),
     }
     return row
+
+
+def limited(episode: Episode, v_max: float) -> dict[str, float]:
+    """What limited the speed, and for how many seconds, the longest first.
+
+    A cause is what the controller names (``Episode.limits``); where it names none, its state
+    ("state: waiting"), or "not named" while it follows the path at less than 95 % of ``v_max``.
+    """
+    times = episode.trajectory.times
+    causes = np.array(episode.limits if len(episode.limits) == len(times) else [""] * len(times))
+    seconds: dict[str, float] = {}
+    for tick, duration in enumerate(np.diff(times)):
+        cause, state = str(causes[tick]), str(episode.states[tick])
+        if not cause and state not in UNHINDERED:
+            cause = f"state: {state}"
+        elif not cause and abs(episode.commands[tick, 0]) < SLOW * v_max:
+            cause = "not named"
+        if cause:
+            seconds[cause] = seconds.get(cause, 0.0) + float(duration)
+    ordered = sorted(seconds.items(), key=lambda item: (-item[1], item[0]))
+    return {cause: round(duration, 3) for cause, duration in ordered}

@@ -21,6 +21,10 @@ from dynastar.io.movingai import load_movingai_map
 from dynastar.planning import SearchGrid
 
 DEFAULT_MISSIONS = None
+QUICK_MISSIONS = 50
+
+COMPARABLE = "Path lengths are compared with recomputed optima; nothing is driven."
+
 INDEX = "verified_scenarios.csv"
 TOLERANCE = 0.005  # cells; older files round their lengths
 ALGORITHM = "astar"

@@ -1,4 +1,4 @@
-"""Rows of an experiment, one a job: made by all cores, kept as they come, gone on with where they end."""
+"""Rows of an experiment, one a job: kept as they come, and continued where a run was cut off."""
 
 import hashlib
 import json
@@ -9,7 +9,7 @@ from typing import Any
 from tqdm import tqdm
 
 import dynastar
-from dynastar.bench.runner import spread
+from dynastar.bench.workers import Workers, completed
 from dynastar.errors import InputError
 from dynastar.io.files import MAX_TEXT_BYTES, jsonable, read_bytes, written_aside
 
@@ -20,57 +20,70 @@ def collect(
     jobs: Sequence[Any],
     file: Path,
     settings: dict[str, Any],
-    workers: int = 1,
+    workers: Workers = 1,
     progress: bool = False,
 ) -> list[dict[str, Any]]:
     """A row for every job, in the jobs' order; those that ``file`` has are not made again.
 
-    The file holds JSON by lines: the settings first, then each row with its job. Other settings, or a
-    file that is none of ours, begin anew; a line that was damaged or cut off in writing is dropped.
+    A job is anything that JSON can hold, or has a ``key`` that is. The file holds JSON by lines: the
+    settings first, then each row with its job. Other settings, or a file that is none of ours, begin
+    anew; a line that was damaged or cut off in writing is dropped.
     """
     done = _kept(file, settings)
-    left = [job for job in jobs if _key(job) not in done]
+    keys = [_key(job) for job in jobs]
+    left = [(key, job) for key, job in zip(keys, jobs, strict=True) if key not in done]
     lines = [settings, *({"job": json.loads(key), "row": row} for key, row in done.items())]
     with written_aside(file) as aside:
         text = "".join(json.dumps(jsonable(line)) + "\n" for line in lines)
         aside.write_text(text, encoding="utf-8")
-    with (
-        file.open("a", encoding="utf-8") as kept,
-        tqdm(
-            total=len(jobs), initial=len(jobs) - len(left), desc=name, disable=not progress
-        ) as bar,
-    ):
-        rows = map(work, left) if workers == 1 else spread(work, left, min(workers, len(left) or 1))
-        for job, row in zip(left, rows, strict=True):
-            kept.write(json.dumps(jsonable({"job": job, "row": row})) + "\n")
+    shown = tqdm(total=len(jobs), initial=len(jobs) - len(left), desc=name, disable=not progress)
+    with file.open("a", encoding="utf-8") as kept, shown as bar:
+        arrived = sum(done[key].get("outcome") == "arrived" for key in keys if key in done)
+        for index, row in completed(work, [job for _, job in left], workers):
+            key = left[index][0]
+            kept.write(json.dumps(jsonable({"job": json.loads(key), "row": row})) + "\n")
             kept.flush()
-            done[_key(job)] = row
+            done[key] = row
+            if "outcome" in row:
+                arrived += row["outcome"] == "arrived"
+                bar.set_postfix(arrived=arrived, refresh=False)
             bar.update()
-    return [done[_key(job)] for job in jobs]
+    return [done[key] for key in keys]
 
 
 def version(*modules: str) -> str:
     """A digest of all that rows can depend on: the library, bench's runner, and its ``modules`` named.
 
-    Of the rest of bench, of cli and of viewer nothing has to do with a row.
+    The rest of bench, cli and viewer have no influence on a row.
     """
     package = Path(dynastar.__file__).parent
-    outside = {"cli", "viewer", "bench"}
-    sources = [
+    named = [package / "bench" / f"{name}.py" for name in {"runner", *modules}]
+    return _digest([*_sources({"cli", "viewer", "bench"}), *named])
+
+
+def code_version() -> str:
+    """A digest of the library and all of bench: what the rows of a suite can depend on."""
+    return _digest(_sources({"cli", "viewer"}))
+
+
+def _sources(outside: set[str]) -> list[Path]:
+    package = Path(dynastar.__file__).parent
+    return [
         source
         for source in package.rglob("*.py")
         if source.relative_to(package).parts[0] not in outside
     ]
+
+
+def _digest(sources: Sequence[Path]) -> str:
     digest = hashlib.sha256()
-    for source in sorted(
-        [*sources, *(package / "bench" / f"{name}.py" for name in {"runner", *modules})]
-    ):
+    for source in sorted(sources):
         digest.update(source.read_bytes())
     return digest.hexdigest()[:16]
 
 
 def _key(job: Any) -> str:
-    return json.dumps(jsonable(job))
+    return json.dumps(jsonable(getattr(job, "key", job)))
 
 
 def _kept(file: Path, settings: dict[str, Any]) -> dict[str, dict[str, Any]]:

@@ -5,22 +5,23 @@ A suite is a module with four names, see ``Suite``. Missions carry the suite's o
 out, and every number that was passed on the way and not run is in ``skipped``.
 """
 
-import multiprocessing
+import hashlib
+import importlib.util
 import os
-import signal
-import statistics
-import sys
-import threading
+import tempfile
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from importlib import import_module
+from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol, cast
 
-from tqdm import tqdm
-
+from dynastar.bench.rows import code_version, collect
+from dynastar.bench.statistics import totals
+from dynastar.bench.workers import Workers
 from dynastar.config import choose
+from dynastar.episode import Episode
 from dynastar.errors import DataError, InputError
 
 SUITES = {
@@ -37,14 +38,18 @@ SUITES = {
 
 
 class Mission(NamedTuple):
-    """One mission of a suite: its ``number`` there, and whatever the suite needs to fly it."""
+    """One mission of a suite: its ``number`` there, and whatever the suite needs to run it."""
 
     number: int
     spec: Any = None
 
 
 class Options(NamedTuple):
-    """What the command line asks of a suite; all of it reaches the worker processes."""
+    """What the command line asks of a suite; all of it reaches the worker processes.
+
+    ``settings`` are the navigator's, as nested tables, over the preset's. ``observe`` is called with
+    each mission that is driven, its repeat, its episode and its row.
+    """
 
     data: Path | None = None
     missions: int | None = None
@@ -52,15 +57,21 @@ class Options(NamedTuple):
     select: str | None = None
     seed: int = 0
     preset: str = "default"
-    workers: int = 1
+    workers: Workers = 1
     ideal: bool = False
     controller: str = "navigator"
     settings: Mapping[str, Any] = {}
-    save_failures: Path | None = None
+    quick: bool = False
+    observe: Callable[[Mission, int, Episode, dict[str, Any]], None] | None = None
 
 
 class Suite(Protocol):
-    """What a module has to have to be a suite."""
+    """What a module has to have to be a suite.
+
+    A suite that drives also has ``scenario(mission, options, repeat)``, the Scenario of a mission. It
+    may have ``QUICK_MISSIONS``, how many missions ``--quick`` runs, ``PUBLISHED``, tuples of a label, a
+    figure in words and the key of its source, and ``COMPARABLE``, what is comparable in a sentence.
+    """
 
     @property
     def DEFAULT_MISSIONS(self) -> int | None:  # noqa: N802 - a constant of the module
@@ -76,7 +87,8 @@ class Suite(Protocol):
         """Runs a mission and returns its row: ``outcome``, ``length`` and whatever else there is.
 
         Read for the totals: ``outcome`` ("arrived", "timeout", ...), ``length`` (m), ``time`` (s),
-        ``contacts_moving`` and ``contacts_resting`` (0 or 1), ``reason``. Called in a worker
+        ``contacts_moving`` and ``contacts_resting`` (0 or 1), ``reason``, ``group``, ``score``,
+        ``time_ratio``, ``tick_ms_median``, ``tick_ms_p99``, ``limited``. Called in a worker
         process; ``repeat`` counts from 0, and so ``options.seed + repeat`` is its seed.
         """
 
@@ -136,6 +148,8 @@ def data_folder(options: Options, suite: str, holds: str) -> Path:
 
 def choose_missions(suite: Suite, options: Options) -> tuple[list[Mission], int]:
     """The missions to run, in order, and how many numbers were passed over or left out."""
+    if options.quick:
+        return _quick_missions(suite, options)
     select = parse_select(options.select) if options.select is not None else None
     limit = options.missions
     if limit is None and (select is None or select.stop is None):
@@ -166,50 +180,123 @@ def _selected(missions: Iterable[Mission], select: Slice | None) -> Iterator[Mis
             yield mission
 
 
-def run_suite(name: str, suite: Suite, options: Options, progress: bool = False) -> dict[str, Any]:
+def _quick_missions(suite: Suite, options: Options) -> tuple[list[Mission], int]:
+    """``QUICK_MISSIONS`` missions, spread evenly; one that is left out gives way to the next.
+
+    Of a suite that runs the first so many of endless missions, these are the first, too: their numbers
+    say nothing about them. ``skipped`` counts only what the suite's rule leaves out.
+    """
+    if options.missions is not None or options.select is not None:
+        raise InputError("--quick chooses the missions itself: leave out --missions and --select")
+    few: int | None = getattr(suite, "QUICK_MISSIONS", None)
+    if few is None or suite.DEFAULT_MISSIONS is not None:
+        return choose_missions(suite, options._replace(quick=False, missions=few))
+    everything = list(suite.missions(options))
+    chosen: list[Mission] = []
+    skipped = following = 0
+    for turn in range(few):
+        following = max(following, turn * len(everything) // few)
+        while following < len(everything) and suite.leave_out(everything[following], options):
+            skipped, following = skipped + 1, following + 1
+        chosen += islice(everything, following, following + 1)
+        following += 1
+    return chosen, skipped
+
+
+class Job(NamedTuple):
+    """A mission to run once: the suite by name, or itself where it has none, and the repeat."""
+
+    suite: str | Suite
+    mission: Mission
+    repeat: int
+
+    @property
+    def key(self) -> tuple[str, int, int]:
+        """What tells it from other jobs."""
+        name = self.suite if isinstance(self.suite, str) else ""
+        return (name, self.mission.number, self.repeat)
+
+
+def jobs_of(name: str, suite: Suite, options: Options) -> tuple[list[Job], int]:
+    """The jobs of a suite, in the missions' order, and how many missions were left out."""
+    chosen, skipped = choose_missions(suite, options)
+    known = name if name in SUITES else suite
+    return [Job(known, m, repeat) for m in chosen for repeat in range(options.repeat)], skipped
+
+
+def run_suite(
+    name: str, suite: Suite, options: Options, progress: bool = False, keep: Path | None = None
+) -> dict[str, Any]:
     """Runs a suite and returns its totals and ``rows``, one a mission, in the missions' order.
 
-    A mission that raises is a row with the outcome "error" and the reason; it stops nothing.
+    A mission that raises is a row with the outcome "error" and the reason; it stops nothing. Finished
+    rows are kept in ``keep``, and a run that was cut off goes on from there. It is not removed.
     """
-    chosen, skipped = choose_missions(suite, options)
-    jobs = [(mission, repeat) for mission in chosen for repeat in range(options.repeat)]
-    fly = partial(_fly, name if name in SUITES else suite, options)
-    workers = min(options.workers, max(len(jobs), 1))
-    with tqdm(total=len(jobs), desc=name, unit="mission", disable=not progress) as bar:
-        rows: list[dict[str, Any]] = []
-        for row in map(fly, jobs) if workers == 1 else spread(fly, jobs, workers):
-            rows.append(row)
-            bar.set_postfix(arrived=sum(row["outcome"] == "arrived" for row in rows), refresh=False)
-            bar.update()
-    return {"suite": name, "preset": options.preset, "seed": options.seed, **totals(rows, skipped)}
+    jobs, skipped = jobs_of(name, suite, options)
+    rows, walls = run_jobs(name, jobs, options, progress, keep)
+    return result_of(name, suite, options, rows, skipped, sum(walls))
 
 
-def totals(rows: list[dict[str, Any]], skipped: int) -> dict[str, Any]:
-    """What a suite's rows add up to; the means are over the missions that arrived, else None."""
-    arrived = [row for row in rows if row["outcome"] == "arrived"]
+def run_jobs(
+    name: str, jobs: Sequence[Job], options: Options, progress: bool, keep: Path | None
+) -> tuple[list[dict[str, Any]], list[float]]:
+    """The row of each job and the seconds of wall time it took, in the jobs' order."""
+    settings = {
+        "run": name,
+        **{key: getattr(options, key) for key in ("seed", "preset", "ideal", "controller")},
+        "settings": options.settings,
+        "data": os.path.abspath(options.data or os.environ.get("DYNASTAR_DATA") or "."),
+        "version": code_version() + _controller_version(options.controller),
+    }
+    work = partial(_timed, options)
+    with tempfile.TemporaryDirectory() as folder:
+        file = keep or Path(folder) / "rows.jsonl"
+        rows = collect(name, work, jobs, file, settings, options.workers, progress)
+    walls = [row.pop("wall_s") for row in rows]
+    return rows, walls
 
-    def mean(key: str) -> float | None:
-        values = [row[key] for row in arrived if row.get(key) is not None]
-        return statistics.fmean(values) if values else None
 
+def result_of(
+    name: str,
+    suite: Suite,
+    options: Options,
+    rows: Sequence[dict[str, Any]],
+    skipped: int,
+    wall: float,
+) -> dict[str, Any]:
+    """What a suite came to, as JSON has it; ``wall_s`` is the missions' wall time together."""
+    published = getattr(suite, "PUBLISHED", ())
     return {
-        "missions": len(rows),
-        "skipped": skipped,
-        "arrived": len(arrived),
-        "contacts_moving": sum(bool(row.get("contacts_moving")) for row in rows),
-        "contacts_resting": sum(bool(row.get("contacts_resting")) for row in rows),
-        "timeouts": sum(row["outcome"] == "timeout" for row in rows),
-        "mean_length": mean("length"),
-        "mean_time": mean("time"),
-        "rows": rows,
+        "suite": name,
+        **{key: getattr(options, key) for key in ("preset", "seed", "ideal", "controller")},
+        "settings": dict(options.settings),
+        "wall_s": round(wall, 1),
+        "published": [dict(zip(("label", "figure", "source"), p, strict=True)) for p in published],
+        "comparable": getattr(suite, "COMPARABLE", ""),
+        **totals(rows, skipped),
     }
 
 
-def _fly(suite: str | Suite, options: Options, job: tuple[Mission, int]) -> dict[str, Any]:
-    mission, repeat = job
-    flown_by = load_suite(suite) if isinstance(suite, str) else suite
-    row = row_of(lambda: flown_by.fly(mission, options, repeat))
-    again = {"number": mission.number, "repeat": repeat, "seed": options.seed + repeat}
+def _controller_version(name: str) -> str:
+    """A digest of the file of a controller of the user's own."""
+    module, colon, _ = name.partition(":")
+    found = importlib.util.find_spec(module) if colon else None
+    if found is None or found.origin is None or not Path(found.origin).is_file():
+        return ""
+    return "-" + hashlib.sha256(Path(found.origin).read_bytes()).hexdigest()[:16]
+
+
+def _timed(options: Options, job: Job) -> dict[str, Any]:
+    began = time.perf_counter()
+    row = run_job(options, job)
+    return row | {"wall_s": time.perf_counter() - began}
+
+
+def run_job(options: Options, job: Job) -> dict[str, Any]:
+    """The row of a job with its number, repeat, seed and preset."""
+    suite = load_suite(job.suite) if isinstance(job.suite, str) else job.suite
+    row = row_of(lambda: suite.fly(job.mission, options, job.repeat))
+    again = {"number": job.mission.number, "repeat": job.repeat, "seed": options.seed + job.repeat}
     return {**again, "preset": options.preset, **row}
 
 
@@ -219,32 +306,3 @@ def row_of(fly: Callable[[], dict[str, Any]]) -> dict[str, Any]:
         return fly()
     except Exception as error:  # a failure is a row, whatever it is: none may go uncounted
         return {"outcome": "error", "reason": f"{type(error).__name__}: {error}"}
-
-
-def spread(
-    work: Callable[[Any], dict[str, Any]], jobs: Sequence[Any], workers: int
-) -> Iterator[dict[str, Any]]:
-    """The rows that ``work`` makes of the jobs, in their order, by so many processes."""
-    context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(workers, context, initializer=_settle)
-    try:
-        yield from pool.map(work, jobs, chunksize=max(1, min(16, len(jobs) // (8 * workers))))
-    finally:
-        pool.shutdown(wait=False, cancel_futures=True)
-
-
-def _settle() -> None:
-    """A worker leaves Ctrl-C to its parent and the other cores to the others, and ends with its parent."""
-    import cv2
-
-    threading.Thread(target=_end_with_parent, daemon=True).start()
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    cv2.setNumThreads(1)
-    sys.stdout = sys.stderr
-
-
-def _end_with_parent() -> None:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()  # a parent that is killed cannot end its workers
-        os._exit(1)

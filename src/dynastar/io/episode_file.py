@@ -37,6 +37,7 @@ _SHAPES: dict[str, tuple[Any, ...]] = {
     "clearance": ("n",),
     "command_ms": ("n",),
     "states": ("n",),
+    "limits": ("n",),
     "movers": ("n", "m", 2),
     "mover_radii": ("m",),
     "obstacle_points": (-1, 2),
@@ -46,6 +47,8 @@ _SHAPES: dict[str, tuple[Any, ...]] = {
     "explored": (-1, 2),
     "explored_rows": (-1,),
 }
+_TEXTS = ("states", "limits")
+_OPTIONAL = ("limits",)  # was not recorded before
 _MASKS = ("keepout", "speed_limit")
 
 
@@ -114,6 +117,8 @@ def _arrays(episode: Episode) -> Arrays:
         "movers": episode.movers,
         "mover_radii": episode.mover_radii,
     }
+    if len(episode.limits):
+        arrays["limits"] = np.asarray(episode.limits, dtype=np.str_)
     for mask in _MASKS:
         if getattr(episode.grid, mask) is not None:
             arrays[mask] = getattr(episode.grid, mask)
@@ -143,6 +148,8 @@ def _check(arrays: Arrays) -> None:
     """Raises EpisodeError unless every array has its shape, and KeyError if one is missing."""
     sizes: dict[str, int] = {}
     for name, shape in _SHAPES.items():
+        if name in _OPTIONAL and name not in arrays:
+            continue
         found = arrays[name].shape
         fits = len(found) == len(shape)
         for wanted, size in zip(shape, found, strict=False):
@@ -152,7 +159,7 @@ def _check(arrays: Arrays) -> None:
         if not fits:
             raise EpisodeError(f"'{name}' has shape {found}: expected {shape} with {sizes}")
         text = arrays[name].dtype.kind == "U"
-        if text != (name == "states") or arrays[name].dtype.kind not in "Uifb":
+        if text != (name in _TEXTS) or arrays[name].dtype.kind not in "Uifb":
             raise EpisodeError(f"'{name}' is of {arrays[name].dtype}: expected numbers or names")
 
 
@@ -189,6 +196,7 @@ def _episode(header: dict[str, Any], arrays: Arrays) -> Episode:
         reason=str(header["reason"]),
         contact=str(header["contact"]),
         explored_frame=(resolution, x, y, yaw),
+        limits=arrays.get("limits", np.empty(0, np.str_)),
         config=dict(header["config"]),
         scenario=dict(header["scenario"]),
     )

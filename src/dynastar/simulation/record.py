@@ -25,6 +25,7 @@ class Recorder:
         self._scenario, self._world = scenario, world
         self._rows: list[tuple[float, ...]] = []
         self._states: list[str] = []
+        self._limits: list[str] = []
         self._movers: list[Floats] = []
         self._plans: list[PlanRecord] = []
         self._events: list[EventRecord] = []
@@ -51,24 +52,25 @@ class Recorder:
                     NOTHING_EXPLORED if explored is None else np.array(explored, np.int32),
                 )
             )
-        self._row(command, command_ms, state)
+        self._row(command, command_ms, state, str(getattr(status, "limited_by", None) or ""))
 
     def contact(self, command: Twist, detail: str) -> None:
         """The moment of a contact; after the first tick, no call of ``command`` belongs to it."""
         self.event("contact", detail)
         if self._world.time > self._rows[-1][0]:
-            self._row(command, math.nan, self._states[-1])
+            self._row(command, math.nan, self._states[-1], self._limits[-1])
 
     def event(self, kind: str, detail: str) -> None:
         """Something that happened now."""
         self._events.append(EventRecord(self._world.time, kind, detail))
 
-    def _row(self, command: Twist, command_ms: float, state: str) -> None:
+    def _row(self, command: Twist, command_ms: float, state: str, limit: str) -> None:
         world = self._world
         self._rows.append(
             (world.time, *world.pose, *world.twist, *command, world.clearance, command_ms)
         )
         self._states.append(state)
+        self._limits.append(limit)
         self._movers.append(world.movers)
 
     def episode(self, outcome: str, reason: str, config: Any, seed: int) -> Episode:
@@ -98,6 +100,7 @@ class Recorder:
             reason=reason,
             contact=self._world.contact,
             explored_frame=(frame.resolution, frame.x, frame.y, frame.yaw),
+            limits=np.array(self._limits, dtype=np.str_),
             config=plain(config),
             scenario=described(scenario, seed),
         )

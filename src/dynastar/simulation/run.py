@@ -27,7 +27,8 @@ class Controller(Protocol):
     """What drives a robot here: ``dynastar.Navigator``, or anything that is called the same way.
 
     ``status`` needs ``state``, ``reason``, ``recoveries``, ``plan``, ``plan_id``, ``plan_reason``,
-    ``planning_frame`` and ``error`` as the Navigator's has them; ``plan`` may stay None.
+    ``planning_frame`` and ``error`` as the Navigator's has them; ``plan`` may stay None. An optional
+    ``limited_by`` says in a word or two what limited the speed in this tick, "" for nothing.
     """
 
     @property

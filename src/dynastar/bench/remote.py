@@ -1,0 +1,81 @@
+"""Jobs on an existing Dask cluster (extra ``dask``).
+
+The cluster's workers need the same version of dynastar's code and the data under the same paths. Dask
+runs a job again whose worker has died; every job's row is handed on once.
+"""
+
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import Any
+
+from dynastar.errors import InputError
+
+Row = dict[str, Any]
+
+TIMEOUT = 15  # s to connect
+RETRIES = 2  # further attempts at a job that raised because of the cluster
+
+_one_at_a_time = threading.Lock()
+
+
+def completed_remotely(
+    work: Callable[[Any], Row], jobs: Sequence[Any], address: str
+) -> Iterator[tuple[int, Row]]:
+    """The index of each job and its row as they are completed on the cluster at ``address``.
+
+    Raises InputError if Dask is not installed, the scheduler cannot be reached, it has no workers, or
+    a worker has another version of the code.
+    """
+    client = _client(address)
+    try:
+        _check_workers(client, address)
+        from distributed import as_completed
+
+        calls = client.map(partial(_alone, work), list(jobs), pure=False, retries=RETRIES)
+        index_of = {future.key: index for index, future in enumerate(calls)}
+        for future in as_completed(calls):
+            # A result that was lost with its worker is computed again, and the key comes twice.
+            index = index_of.pop(future.key, None)
+            if index is not None:
+                yield index, future.result()
+    finally:
+        client.close()
+
+
+def _client(address: str) -> Any:
+    try:
+        from distributed import Client
+    except ImportError:
+        raise InputError("--dask needs Dask: pip install 'dynastar[dask]'") from None
+    try:
+        return Client(address, timeout=TIMEOUT, set_as_default=False)
+    except (OSError, ValueError, TimeoutError) as error:
+        raise InputError(
+            f"--dask {address}: no scheduler answers there ({error!s:.100}); expected its address, as in "
+            "tcp://127.0.0.1:8786"
+        ) from None
+
+
+def _check_workers(client: Any, address: str) -> None:
+    from dynastar.bench.rows import code_version
+
+    found = client.run(code_version)
+    if not found:
+        raise InputError(f"--dask {address}: the cluster has no workers")
+    here = code_version()
+    others = [worker for worker, there in found.items() if there != here]
+    if others:
+        raise InputError(
+            f"--dask {address}: the worker {others[0]} has another version of dynastar's code; install "
+            "the same one everywhere"
+        )
+
+
+def _alone(work: Callable[[Any], Row], job: Any) -> Row:
+    """Does a job on one thread, one job at a time in each process."""
+    import cv2
+
+    with _one_at_a_time:
+        cv2.setNumThreads(1)
+        return work(job)

@@ -1,0 +1,133 @@
+"""What the rows of a suite add up to, with intervals."""
+
+import math
+import statistics
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+Row = Mapping[str, Any]
+Interval = tuple[float, float]
+
+Z_95 = 1.959963984540054  # two-sided 95 % of a normal distribution
+RESAMPLES = 10_000
+
+
+def wilson(successes: int, trials: int, z: float = Z_95) -> Interval | None:
+    """Wilson's score interval of a proportion [Wilson1927]; None without trials."""
+    if trials == 0:
+        return None
+    p, n = successes / trials, trials
+    middle = (p + z * z / (2 * n)) / (1 + z * z / n)
+    half = z / (1 + z * z / n) * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
+    return max(0.0, middle - half), min(1.0, middle + half)
+
+
+def mcnemar(only_first: int, only_second: int) -> float:
+    """Two-sided p of McNemar's exact test: of pairs that differ, so many for the one and the other."""
+    n, fewer = only_first + only_second, min(only_first, only_second)
+    tail = sum(math.comb(n, k) for k in range(fewer + 1))
+    return min(1.0, 2 * tail / 2**n)
+
+
+def bootstrap(values: Sequence[float]) -> Interval | None:
+    """95 % interval of the mean by the percentiles of resampled means; None under two values.
+
+    Seeded, so that the same values give the same interval.
+    """
+    if len(values) < 2:
+        return None
+    array = np.asarray(values, dtype=np.float64)
+    random = np.random.default_rng(0)
+    means = [array[random.integers(0, len(array), len(array))].mean() for _ in range(RESAMPLES)]
+    low, high = np.percentile(means, [2.5, 97.5])
+    return float(low), float(high)
+
+
+def succeeded(row: Row) -> bool:
+    """Whether a mission ended as it should: arrived, or rightly said that there is no way; no contact."""
+    touched = row.get("contacts_moving") or row.get("contacts_resting")
+    return not touched and (row["outcome"] == "arrived" or rightly_blocked(row))
+
+
+def rightly_blocked(row: Row) -> bool:
+    """Whether the robot said that there is no way, and that is true."""
+    return row["outcome"] == "blocked_rightly" or bool(row.get("blocked_rightly"))
+
+
+def totals(rows: Sequence[Row], skipped: int) -> dict[str, Any]:
+    """What a suite's rows add up to, for each group, too, and the ``rows`` themselves.
+
+    Means and ``time_ratio`` are over the missions that arrived; None where there is nothing to
+    average. ``score`` is over all missions, 0 for one that has none, and None for a suite without.
+    Intervals are fractions of the missions. Ticks are medians over the missions. ``limited`` has
+    seconds by cause.
+    """
+    names = dict.fromkeys(str(row["group"]) for row in rows if row.get("group"))
+    groups = {
+        name: _sums([row for row in rows if str(row.get("group", "")) == name]) for name in names
+    }
+    sums = _sums(rows)
+    first = {"missions": sums.pop("missions"), "skipped": skipped}
+    return {**first, **sums, "groups": groups, "rows": list(rows)}
+
+
+def _sums(rows: Sequence[Row]) -> dict[str, Any]:
+    arrived = [row for row in rows if row["outcome"] == "arrived"]
+    moving, resting = (
+        _count(rows, lambda row, kind=kind: bool(row.get(f"contacts_{kind}")))  # type: ignore[misc]
+        for kind in ("moving", "resting")
+    )
+    success = _count(rows, succeeded)
+    scores = [row.get("score") for row in rows]
+    has_score = any(score is not None for score in scores)
+    return {
+        "missions": len(rows),
+        "arrived": len(arrived),
+        "blocked_rightly": _count(rows, rightly_blocked),
+        "succeeded": success,
+        "contacts_moving": moving,
+        "contacts_resting": resting,
+        "timeouts": _count(rows, lambda row: row["outcome"] == "timeout"),
+        "errors": _count(rows, lambda row: row["outcome"] == "error"),
+        "arrived_interval": wilson(len(arrived), len(rows)),
+        "succeeded_interval": wilson(success, len(rows)),
+        "contacts_moving_interval": wilson(moving, len(rows)),
+        "contacts_resting_interval": wilson(resting, len(rows)),
+        "score": statistics.fmean(score or 0.0 for score in scores) if has_score else None,
+        "mean_length": _mean(arrived, "length"),
+        "mean_time": _mean(arrived, "time"),
+        "time_ratio": _mean(arrived, "time_ratio"),
+        "tick_ms_median": _median(rows, "tick_ms_median"),
+        "tick_ms_p99": _median(rows, "tick_ms_p99"),
+        "limited": seconds_by_cause(row.get("limited") or {} for row in rows),
+    }
+
+
+def seconds_by_cause(tables: Iterable[Mapping[str, float]]) -> dict[str, float]:
+    """The sum of tables of seconds by cause, the largest first."""
+    total: dict[str, float] = {}
+    for table in tables:
+        for cause, seconds in table.items():
+            total[cause] = total.get(cause, 0.0) + seconds
+    ordered = sorted(total.items(), key=lambda item: (-item[1], item[0]))
+    return {cause: round(seconds, 3) for cause, seconds in ordered}
+
+
+def _count(rows: Sequence[Row], holds: Callable[[Row], bool]) -> int:
+    return sum(map(holds, rows))
+
+
+def _present(rows: Sequence[Row], key: str) -> list[float]:
+    return [row[key] for row in rows if row.get(key) is not None]
+
+
+def _mean(rows: Sequence[Row], key: str) -> float | None:
+    values = _present(rows, key)
+    return statistics.fmean(values) if values else None
+
+
+def _median(rows: Sequence[Row], key: str) -> float | None:
+    values = _present(rows, key)
+    return statistics.median(values) if values else None

@@ -1,0 +1,109 @@
+"""Work on many jobs at once: in processes of this machine, or on a Dask cluster.
+
+``Workers`` says where: a number of processes, or the address of a cluster's scheduler. Each job runs
+on one thread, so that what it measures does not depend on the number of cores.
+"""
+
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from typing import Any
+
+from dynastar.errors import DynastarError
+
+Workers = int | str
+Row = dict[str, Any]
+
+SINGLE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+
+
+def completed(
+    work: Callable[[Any], Row], jobs: Sequence[Any], workers: Workers
+) -> Iterator[tuple[int, Row]]:
+    """The index of each job and the row that ``work`` makes of it, as they are completed.
+
+    With one process or one job all of it happens in this process, in order. Leaving the iterator early
+    ends the worker processes. Raises DynastarError if a worker process was killed, and InputError for
+    a cluster that cannot be used.
+    """
+    if isinstance(workers, str):
+        from dynastar.bench.remote import completed_remotely
+
+        yield from completed_remotely(work, jobs, workers)
+    elif min(workers, len(jobs)) <= 1:
+        yield from ((index, work(job)) for index, job in enumerate(jobs))
+    else:
+        yield from _in_processes(work, jobs, min(workers, len(jobs)))
+
+
+def spread(work: Callable[[Any], Row], jobs: Sequence[Any], workers: Workers) -> Iterator[Row]:
+    """The rows that ``work`` makes of the jobs, in their order."""
+    waiting: dict[int, Row] = {}
+    following = 0
+    for index, row in completed(work, jobs, workers):
+        waiting[index] = row
+        while following in waiting:
+            yield waiting.pop(following)
+            following += 1
+
+
+def _in_processes(
+    work: Callable[[Any], Row], jobs: Sequence[Any], workers: int
+) -> Iterator[tuple[int, Row]]:
+    others = set(multiprocessing.active_children())
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(workers, context, initializer=settle)
+    done = False
+    try:
+        with _single_threaded():  # processes start when jobs are submitted
+            futures = {pool.submit(work, job): index for index, job in enumerate(jobs)}
+        for future in as_completed(futures):
+            yield futures[future], future.result()
+        done = True
+    except BrokenProcessPool:
+        raise DynastarError(
+            "a worker process was killed (not enough memory?); fewer --workers need less"
+        ) from None
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+        if not done:  # nobody waits for the jobs that are under way
+            for child in set(multiprocessing.active_children()) - others:
+                child.kill()
+
+
+@contextmanager
+def _single_threaded() -> Iterator[None]:
+    """Lets processes that start in the meantime use one thread each."""
+    before = {name: os.environ.get(name) for name in SINGLE_THREAD}
+    os.environ.update(dict.fromkeys(SINGLE_THREAD, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+def settle() -> None:
+    """Prepares a worker process: one thread, Ctrl-C left to the parent, an end with the parent."""
+    import cv2
+
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    cv2.setNumThreads(1)
+    sys.stdout = sys.stderr
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()  # a parent that is killed cannot end its workers
+        os._exit(1)
