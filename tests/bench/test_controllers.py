@@ -172,10 +172,11 @@ def test_it_drives_straight_across_fast():
 
 @pytest.mark.parametrize("robot", [ROUND, JACKAL], ids=["disc", "polygon"])
 def test_it_goes_round_what_no_map_has(robot):
-    _, found = driven(mission(robot, obstacles=(BOX,)))
+    episode, found = driven(mission(robot, obstacles=(BOX,)))
     assert found.outcome == "arrived"
     assert found.min_clearance > 0.02
     assert found.length > 5.1
+    assert {"curvature", "proximity", "approach to the goal"} <= set(episode.limits)
 
 
 def test_it_turns_to_a_goals_heading_and_takes_goals_in_order():

@@ -56,10 +56,10 @@ class Raising(Straight):
         raise RuntimeError("no idea")
 
 
-def flown(monkeypatch, mission, controller):
+def flown(monkeypatch, mission, controller, **more):
     monkeypatch.setattr(driven, "controller_named", lambda name: controller)
     monkeypatch.setattr(driven, "time_bound", lambda scenario: None)
-    return faults.fly(mission, Options(controller="given"), 0)
+    return faults.fly(mission, Options(controller="given", **more), 0)
 
 
 def test_every_case_strikes_both_robots_at_three_times():
@@ -185,3 +185,14 @@ def test_a_mission_flies_the_same_twice(monkeypatch):
         for key in ("command_ms_mean", "command_ms_max", "tick_ms_median", "tick_ms_p99"):
             row.pop(key)
     assert one == two
+
+
+def test_the_episode_can_be_observed_from_here(monkeypatch):
+    seen = []
+    row = flown(
+        monkeypatch, number("scans_lost"), Straight, observe=lambda *given: seen.append(given)
+    )
+    ((mission, repeat, episode, observed),) = seen
+    assert (mission.number, repeat, observed) == (number("scans_lost").number, 0, row)
+    assert episode.outcome == row["outcome"]
+    assert "episode" not in row

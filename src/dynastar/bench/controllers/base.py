@@ -68,6 +68,7 @@ class PathController(ABC):
 
     def command(self, state: RobotState, scan: LaserScan | None) -> Twist:
         """The twist to drive from now on."""
+        self.status = replace(self.status, limited_by="")
         fault = self._fault(state, scan)
         if fault is None and scan is not None:
             self._see(state, scan)

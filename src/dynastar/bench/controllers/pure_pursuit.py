@@ -1,6 +1,7 @@
 """Regulated pure pursuit [Macenski2023] on a replanned path: the classic that stops for what is ahead."""
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -65,17 +66,20 @@ class PurePursuit(PathController):
         room = free - late - 0.02
         if room <= 0.0:
             return None
-        speed = min(
-            self._regulated(pose, curvature, around),
-            math.sqrt(2.0 * options.braking * limits.v_brake * room),
-            limits.omega_max / max(abs(curvature), 1e-9),
-        )
+        speeds = self._regulated(pose, curvature, around) | {
+            "obstacle ahead": math.sqrt(2.0 * options.braking * limits.v_brake * room),
+            "turning rate": limits.omega_max / max(abs(curvature), 1e-9),
+        }
         left = path.length - self.route.s
         if left < options.approach:
-            speed = min(speed, max(limits.v_max * left / options.approach, options.approach_low))
+            slow = max(limits.v_max * left / options.approach, options.approach_low)
+            speeds["approach to the goal"] = slow
+        cause, speed = min(speeds.items(), key=lambda item: item[1])
+        if speed < limits.v_max:
+            self.status = replace(self.status, limited_by=cause)
         # The drive ramps up: the arc belongs to the speed it will have.
-        ramp = min(speed, self._last.v + limits.v_accel * self.config.period)
-        return Twist(speed, max(ramp, 0.0) * curvature)
+        ramp = min(speed, limits.v_max, self._last.v + limits.v_accel * self.config.period)
+        return Twist(min(speed, limits.v_max), max(ramp, 0.0) * curvature)
 
     def _best_arc(
         self, pose: Pose2D, lookahead: float, reach: float, around: Surroundings
@@ -118,10 +122,13 @@ class PurePursuit(PathController):
         touching = np.flatnonzero(gaps < min(0.0, float(gaps[0]) - 1e-6))
         return float(steps[max(touching[0] - 1, 0)]) if len(touching) else reach
 
-    def _regulated(self, pose: Pose2D, curvature: float, around: Surroundings) -> float:
-        """The speed that curvature and proximity leave of v_max."""
+    def _regulated(self, pose: Pose2D, curvature: float, around: Surroundings) -> dict[str, float]:
+        """The speeds (m/s) that curvature and proximity leave, by cause."""
         options, fastest = self.settings, self.robot.limits.v_max
-        bend = min(1.0, 1.0 / max(abs(curvature) * options.radius_low, 1e-9))
         gap = float(around.gaps(np.array([pose]), self.discs)[0])
-        near = min(1.0, max(gap, 0.0) / options.proximity)
-        return max(fastest * min(bend, near), min(options.speed_low, fastest))
+        left = {
+            "curvature": 1.0 / max(abs(curvature) * options.radius_low, 1e-9),
+            "proximity": max(gap, 0.0) / options.proximity,
+        }
+        low = min(options.speed_low, fastest)
+        return {cause: max(fastest * min(part, 1.0), low) for cause, part in left.items()}

@@ -12,7 +12,8 @@ class Status:
     """What the simulation reads of a controller after each command.
 
     ``state`` and ``reason`` say what it does; ``plan_id`` rises with every new ``plan``, whose cells
-    belong to ``planning_frame``; ``error`` is why no plan could be made where that ended the mission.
+    belong to ``planning_frame``; ``error`` is why no plan could be made where that ended the mission;
+    ``limited_by`` is what limited the speed in this tick, "" for nothing.
     """
 
     state: str = "idle"
@@ -23,3 +24,4 @@ class Status:
     plan_reason: str = ""
     planning_frame: GridFrame = GridFrame(1.0)
     error: PlanningError | None = None
+    limited_by: str = ""

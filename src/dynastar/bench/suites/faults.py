@@ -157,16 +157,32 @@ def fly(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
     """Drives a mission and judges what the robot did about the fault."""
     case, name, _ = mission.spec
     flown = scenario(mission, options, repeat)
-    judge = partial(judged, case=case, latency=flown.latency)
     if options.controller == "navigator":
         warm_up()  # here, so that the mission's own process has the kernels
     # A controller that raises or never returns has failed this case, too.
-    row = row_within(
-        WALL_LIMIT,
-        lambda: driven.fly(flown, options, mission, repeat, group=case.name, extra=judge),
-    )
+    row = row_within(WALL_LIMIT, partial(_flown, flown, mission, options, repeat))
+    episode = row.pop("episode", None)
     failed = {"group": case.name, "right": False, "stopped_in_time": False if case.stop else None}
-    return failed | {"robot": name} | row
+    row = failed | {"robot": name} | row
+    if options.observe is not None and episode is not None:
+        options.observe(mission, repeat, episode, row)
+    return row
+
+
+def _flown(flown: Scenario, mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
+    """The row of a mission, with its episode where that is to be observed."""
+    case: Case = mission.spec.case
+    episodes: list[Episode] = []
+    asked = options._replace(observe=lambda *seen: episodes.append(seen[2]))
+    row = driven.fly(
+        flown,
+        options if options.observe is None else asked,
+        mission,
+        repeat,
+        group=case.name,
+        extra=partial(judged, case=case, latency=flown.latency),
+    )
+    return row | {"episode": episodes[0]} if episodes else row
 
 
 def judged(episode: Episode, case: Case, latency: float) -> dict[str, Any]:
