@@ -38,8 +38,9 @@ class Episode:
     ``clearance`` (n,) the true gap between footprint and anything in metres, ``command_ms`` (n,) the
     time a ``command`` took, ``movers`` (n, m, 2) where they truly were, ``mover_radii`` (m,),
     ``states`` (n,) the navigator's state by name, ``limits`` (n,) what limited the speed as far as the
-    navigator says so, else "", and empty where that was not recorded. ``obstacles`` lists the polygons (k, 2) that
-    the map did not have. ``explored_frame`` is (resolution, x, y, yaw) of the plans' explored cells.
+    navigator says so, else "", and empty where that was not recorded. ``obstacles`` lists the polygons
+    (k, 2) that the map did not have. ``explored_frame`` is (resolution, x, y, yaw) of the plans'
+    explored cells.
     """
 
     grid: OccupancyGrid

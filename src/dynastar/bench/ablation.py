@@ -1,6 +1,6 @@
 """The ablation: the suite's worlds driven with one thing left out or read differently at a time."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,7 @@ from dynastar.bench.arms import ARMS
 from dynastar.bench.follower import Follower
 from dynastar.bench.rows import collect, version
 from dynastar.bench.runner import Options, choose_missions, row_of
+from dynastar.bench.settings import merged
 from dynastar.bench.tables import Cell, Table
 from dynastar.metrics import measure
 from dynastar.simulation import Scenario
@@ -23,24 +24,34 @@ Row = dict[str, Any]
 
 
 def run(
-    missions: int, seed: int, folder: Path, workers: int = 1, progress: bool = False
+    missions: int,
+    seed: int,
+    folder: Path,
+    workers: int = 1,
+    progress: bool = False,
+    settings: Mapping[str, Any] | None = None,
 ) -> list[Row]:
     """A row for every arm on each of the suite's first worlds that its rule does not leave out.
 
-    They come world by world, are kept in ``folder`` and gone on with from there, by the same version.
+    ``settings`` of the navigator are over those of the preset, but below those of an arm. The rows
+    come world by world, are kept in ``folder`` and gone on with from there, by the same version.
     """
     folder.mkdir(parents=True, exist_ok=True)
     chosen, _ = choose_missions(paper, Options(missions=missions, seed=seed))
     jobs = [(mission.number, arm) for mission in chosen for arm in ARMS]
     modules = ("ablation", "arms", "follower", "paper")
-    settings = {"table": "ablation", "seed": seed, "version": version(*modules)}
-    work = partial(_row, seed=seed)
-    return collect("ablation", work, jobs, folder / "ablation.jsonl", settings, workers, progress)
+    run_of = {"table": "ablation", "seed": seed, "version": version(*modules)}
+    run_of |= {"settings": settings} if settings else {}
+    work = partial(_row, seed=seed, settings=settings)
+    return collect("ablation", work, jobs, folder / "ablation.jsonl", run_of, workers, progress)
 
 
-def fly(scenario: Scenario, arm: str, seed: int = 0) -> Row:
+def fly(
+    scenario: Scenario, arm: str, seed: int = 0, settings: Mapping[str, Any] | None = None
+) -> Row:
     """Drives a world the way of an arm and returns its metrics; "error" if that raises."""
-    preset, navigator, follows = ARMS[arm]
+    preset, of_arm, follows = ARMS[arm]
+    navigator = merged(settings or {}, of_arm)
     flown = Scenario(**{**vars(scenario), "preset": preset, "navigator": navigator, "seed": seed})
     return row_of(lambda: measure(drive(flown, navigator=Follower if follows else None))._asdict())
 
@@ -117,8 +128,8 @@ def tables(rows: Sequence[Row]) -> list[Table]:
     ]
 
 
-def _row(job: tuple[int, str], seed: int) -> Row:
+def _row(job: tuple[int, str], seed: int, settings: Mapping[str, Any] | None) -> Row:
     number, arm = job
     made = paper.world(seed, number)
     assert isinstance(made, Scenario)
-    return {"number": number, "arm": arm, **fly(made, arm, seed)}
+    return {"number": number, "arm": arm, **fly(made, arm, seed, settings)}

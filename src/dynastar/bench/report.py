@@ -19,7 +19,10 @@ Rows = Sequence[Mapping[str, Any]]
 
 
 class Asked(NamedTuple):
-    """How much of it, from which seed, into which folder, by so many processes."""
+    """How much of it, from which seed, into which folder, by so many processes.
+
+    ``settings`` of the navigator are over those of each preset, but below those of an arm.
+    """
 
     maps: int
     worlds: int
@@ -27,6 +30,7 @@ class Asked(NamedTuple):
     folder: Path
     workers: int = 1
     progress: bool = False
+    settings: Mapping[str, Any] = {}
 
 
 class Report(NamedTuple):
@@ -44,7 +48,7 @@ class Report(NamedTuple):
 
 def report_table1(asked: Asked) -> Report:
     """Table I: on the own map, over many, and over a tenth as many large ones."""
-    seed, folder, workers, progress = asked[2:]
+    seed, folder, workers, progress, _ = asked[2:]
     rows = table1.run(asked.maps, seed, folder, workers, progress=progress)
     few = -(-asked.maps // table1.FEWER)
     large = table1.run(few, seed, folder, workers, table1.LARGE, progress)
@@ -80,9 +84,9 @@ def report_table1(asked: Asked) -> Report:
 
 def report_table3(asked: Asked) -> Report:
     """Table III: in the own world, and over many."""
-    seed, folder, workers, progress = asked[2:]
-    rows = table3.run(asked.maps, seed, folder, workers, progress)
-    own = table3.own_row()
+    seed, folder, workers, progress, settings = asked[2:]
+    rows = table3.run(asked.maps, seed, folder, workers, progress, settings=settings)
+    own = table3.own_row(settings=settings)
     arrived = [row for row in rows if row["outcome"] == "arrived"]
     alone, hybrid = table3.PRINTED["improved"], table3.PRINTED["hybrid"]
     measures = {
@@ -108,9 +112,9 @@ def report_table3(asked: Asked) -> Report:
 
 def report_ablation(asked: Asked) -> Report:
     """The ablation: on worlds, and the terms of Eq. 2 on maps, too."""
-    seed, folder, workers, progress = asked[2:]
+    seed, folder, workers, progress, settings = asked[2:]
     on_maps = terms.run(asked.maps, seed, folder, workers, progress=progress)
-    rows = ablation.run(asked.worlds, seed, folder, workers, progress)
+    rows = ablation.run(asked.worlds, seed, folder, workers, progress, settings)
     found = ablation.summary(rows)
 
     def column(label: str, of: Callable[[dict[str, Any]], float | None], format_: str) -> Column:

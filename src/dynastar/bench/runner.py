@@ -21,7 +21,6 @@ from dynastar.bench.rows import code_version, collect
 from dynastar.bench.statistics import totals
 from dynastar.bench.workers import Workers
 from dynastar.config import choose
-from dynastar.episode import Episode
 from dynastar.errors import DataError, InputError
 
 SUITES = {
@@ -33,6 +32,8 @@ SUITES = {
     "crowd": "dynastar.bench.suites.crowd",
     "maps": "dynastar.bench.suites.maps",
     "office": "dynastar.bench.suites.office",
+    "random": "dynastar.bench.suites.random_worlds",
+    "people": "dynastar.bench.suites.people",
     "faults": "dynastar.bench.suites.faults",
 }
 
@@ -48,7 +49,7 @@ class Options(NamedTuple):
     """What the command line asks of a suite; all of it reaches the worker processes.
 
     ``settings`` are the navigator's, as nested tables, over the preset's. ``observe`` is called with
-    each mission that is driven, its repeat, its episode and its row.
+    the suite's name and each mission that is driven, its repeat, its episode and its row.
     """
 
     data: Path | None = None
@@ -62,7 +63,7 @@ class Options(NamedTuple):
     controller: str = "navigator"
     settings: Mapping[str, Any] = {}
     quick: bool = False
-    observe: Callable[[Mission, int, Episode, dict[str, Any]], None] | None = None
+    observe: Callable[..., None] | None = None
 
 
 class Suite(Protocol):
@@ -295,6 +296,8 @@ def _timed(options: Options, job: Job) -> dict[str, Any]:
 def run_job(options: Options, job: Job) -> dict[str, Any]:
     """The row of a job with its number, repeat, seed and preset."""
     suite = load_suite(job.suite) if isinstance(job.suite, str) else job.suite
+    if options.observe is not None:
+        options = options._replace(observe=partial(options.observe, job.key[0]))
     row = row_of(lambda: suite.fly(job.mission, options, job.repeat))
     again = {"number": job.mission.number, "repeat": job.repeat, "seed": options.seed + job.repeat}
     return {**again, "preset": options.preset, **row}

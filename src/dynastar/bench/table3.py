@@ -1,6 +1,6 @@
 """Table III: the improved A* alone against the hybrid, over many worlds and on the own one."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from operator import itemgetter
 from pathlib import Path
@@ -31,23 +31,28 @@ def run(
     workers: int = 1,
     progress: bool = False,
     preset: str = "default",
+    settings: Mapping[str, Any] | None = None,
 ) -> list[Row]:
     """The rows of the suite's first ``missions`` worlds that its rule does not leave out.
 
-    They are kept in ``folder`` and gone on with from there, by the same version.
+    ``settings`` of the navigator are over those of the preset. The rows are kept in ``folder`` and
+    gone on with from there, by the same version.
     """
     folder.mkdir(parents=True, exist_ok=True)
     chosen, _ = choose_missions(paper, Options(missions=missions, seed=seed))
     jobs = [mission.number for mission in chosen]
     modules = ("table3", "paper", "own_maps")
-    settings = {"table": 3, "seed": seed, "preset": preset, "version": version(*modules)}
-    work = partial(_row, seed=seed, preset=preset)
-    return collect("table3", work, jobs, folder / "table3.jsonl", settings, workers, progress)
+    run_of = {"table": 3, "seed": seed, "preset": preset, "version": version(*modules)}
+    run_of |= {"settings": settings} if settings else {}
+    work = partial(_row, seed=seed, preset=preset, settings=settings or {})
+    return collect("table3", work, jobs, folder / "table3.jsonl", run_of, workers, progress)
 
 
-def own_row(preset: str = "default", seed: int = 0) -> Row:
+def own_row(
+    preset: str = "default", seed: int = 0, settings: Mapping[str, Any] | None = None
+) -> Row:
     """The row of the project's own world; it has no number."""
-    return {"number": None, **_both(paper.own_world(), preset, seed)}
+    return {"number": None, **_both(paper.own_world(), preset, seed, settings or {})}
 
 
 def grid_way(scenario: Scenario) -> Row:
@@ -196,14 +201,15 @@ def _five(values: Sequence[float]) -> list[float | None]:
     return [float(q) for q in np.quantile(values, (0.5, 0.25, 0.75, 0.95, 1.0))]
 
 
-def _row(number: int, seed: int, preset: str) -> Row:
+def _row(number: int, seed: int, preset: str, settings: Mapping[str, Any]) -> Row:
     made = paper.world(seed, number)
     assert isinstance(made, Scenario)
-    return {"number": number, **_both(made, preset, seed)}
+    return {"number": number, **_both(made, preset, seed, settings)}
 
 
-def _both(scenario: Scenario, preset: str, seed: int) -> Row:
-    driven = Scenario(**{**vars(scenario), "preset": preset, "seed": seed})
+def _both(scenario: Scenario, preset: str, seed: int, settings: Mapping[str, Any]) -> Row:
+    changes = {"preset": preset, "seed": seed, "navigator": settings}
+    driven = Scenario(**{**vars(scenario), **changes})
     return {**row_of(lambda: measure(drive(driven))._asdict()), **grid_way(scenario)}
 
 

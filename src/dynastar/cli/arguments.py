@@ -11,6 +11,19 @@ if TYPE_CHECKING:  # neither is imported for --help
     from pathlib import Path
     from typing import NoReturn
 
+# The names in dynastar.bench.runner.SUITES, which would import too much for --help.
+SUITES = (
+    "movingai",
+    "paper",
+    "barn",
+    "dynabarn",
+    "mrpb",
+    "crowd",
+    "maps",
+    "office",
+    "faults",
+)
+
 PLAN_EXAMPLES = """\
 examples:
   dynastar plan office.yaml --start 2 2 --goal 38 23 --radius 0.25
@@ -24,14 +37,24 @@ RUN_EXAMPLES = """\
 examples:
   dynastar run examples/office/office.toml --out out/office
   dynastar run office.toml --seed 7 --preset paper --json > summary.json
+  dynastar run office.toml --set dwa.horizon=2 --set reverse=false
 
 Writes figure.png, animation.gif, summary.json, episode.npz and config.json into DIR."""
 
 BENCH_EXAMPLES = """\
 examples:
   dynastar bench movingai --data data/movingai
-  dynastar bench paper --missions 500 --workers 2 --json-out paper.json
-  dynastar bench paper --select 17              # mission 17 alone, as often as you like"""
+  dynastar bench barn --data data --workers 2 --json-out barn.json
+  dynastar bench barn --replay 17               # mission 17 again, with pictures and the episode
+  dynastar bench barn --set dwa.horizon=2 --save-failures out/failures --json-out b.json
+  dynastar bench maps --controller pure_pursuit
+  dynastar bench all --quick --data data --out out/bench
+  dynastar bench compare barn.json b.json
+
+A mission has the suite's own number. A run with --json-out that was cut off goes on where it ended when
+it is called again; until then its rows are in FILE.rows.jsonl. `all` runs every suite whose data and
+extras are there and writes all.json, all.txt and all.png into DIR. `compare` takes two results of the
+same missions and says for each suite whether the second is better, worse or not clearly different."""
 
 PAPER_EXAMPLES = """\
 examples:
@@ -62,6 +85,7 @@ examples:
   dynastar plan office.yaml --start 2 2 --goal 38 23 --radius 0.25
   dynastar run examples/office/office.toml --out out/office
   dynastar bench paper --missions 20
+  dynastar bench all --quick --data data
   dynastar paper table1 --maps 100
   dynastar warmup"""
 
@@ -117,6 +141,12 @@ def seed(text: str) -> int:
     if value < 0:
         raise argparse.ArgumentTypeError(f"{text!r} is negative: expected 0 or more")
     return value
+
+
+def replayed(text: str) -> tuple[int, int]:
+    """A mission's number N, or N:R with its repeat."""
+    number, _, repeat = text.partition(":")
+    return seed(number), seed(repeat or "0")
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -188,16 +218,23 @@ def _add_run(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
     run.add_argument("--preset", choices=("default", "paper"), help="instead of the scenario's")
     run.add_argument("--json", action="store_true", help="JSON on stdout instead of a table")
     run.add_argument("--no-gif", action="store_true", help="leave out the animation")
+    _add_set(run)
 
 
 def _add_bench(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
     bench = commands.add_parser(
         "bench",
-        help="run a suite of missions",
-        description="Runs a suite of missions, movingai or paper, and counts every failure.",
+        help="run suites of missions, compare results",
+        description="Runs a suite of missions, or all of them, and counts every failure; runs a mission "
+        "again; compares two results.",
         epilog=BENCH_EXAMPLES,
     )
-    bench.add_argument("suite", metavar="SUITE", help="movingai or paper")
+    bench.add_argument(
+        "suite",
+        metavar="SUITE",
+        help=f"{', '.join(SUITES)}; `all` for all of them, `compare` for two results",
+    )
+    bench.add_argument("files", nargs="*", metavar="FILE", help="two results, for `compare`")
     bench.add_argument(
         "--data",
         type=path,
@@ -213,9 +250,54 @@ def _add_bench(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
     )
     bench.add_argument("--seed", type=seed, default=0, metavar="N")
     bench.add_argument("--preset", choices=("default", "paper"), default="default")
+    bench.add_argument(
+        "--ideal", action="store_true", help="without range noise and without latency"
+    )
+    bench.add_argument(
+        "--controller",
+        default="navigator",
+        metavar="NAME",
+        help="navigator (the default), pure_pursuit, kompass_dwa, or a class as MODULE:CLASS",
+    )
+    _add_set(bench)
+    bench.add_argument(
+        "--quick", action="store_true", help="a few missions of the suite, or of each"
+    )
     bench.add_argument("--workers", type=count, metavar="N", help="processes (default: all cores)")
     bench.add_argument(
+        "--dask", metavar="ADDRESS", help="run on this Dask cluster instead, as tcp://host:8786"
+    )
+    bench.add_argument(
         "--json-out", metavar="FILE", help="the result with a row for every mission; - is stdout"
+    )
+    bench.add_argument(
+        "--save-failures",
+        type=path,
+        metavar="DIR",
+        help="write the episode (.npz) and a picture (.png) of each mission that failed into DIR",
+    )
+    bench.add_argument(
+        "--replay",
+        type=replayed,
+        metavar="N",
+        help="run mission N again (its repeat R: N:R) and write what `run` writes",
+    )
+    bench.add_argument(
+        "--out",
+        type=path,
+        metavar="DIR",
+        help="of --replay (default out/SUITE-N) and `all` (out/bench)",
+    )
+    bench.add_argument("--no-gif", action="store_true", help="leave out the animation of --replay")
+
+
+def _add_set(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        help="a setting of the navigator, as dwa.horizon=2; repeatable",
     )
 
 
@@ -251,6 +333,7 @@ def _add_paper(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
     paper.add_argument("--out", type=path, metavar="DIR", help="default out/paper")
     paper.add_argument("--workers", type=count, metavar="N", help="processes (default: all cores)")
     paper.add_argument("--json-out", metavar="FILE", help="all figures; - is stdout")
+    _add_set(paper)
     paper.add_argument(
         "--docs", type=path, metavar="FILE", help="a page whose tables are to be these"
     )

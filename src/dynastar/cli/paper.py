@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from dynastar.bench.report import REPORTS, Asked, Report, report_targets, write
+from dynastar.bench.settings import read_settings
 from dynastar.bench.tables import Table, as_markdown, as_text, fill
+from dynastar.cli.outputs import check_file
 from dynastar.cli.show import as_json
 from dynastar.errors import InputError
 from dynastar.io.files import write_json, written_aside
@@ -16,11 +18,12 @@ from dynastar.io.files import write_json, written_aside
 
 def execute(arguments: argparse.Namespace) -> int:
     """Makes what is asked for; prints its tables, or JSON, and writes its files into the folder."""
-    to_file = arguments.json_out not in (None, "-")
-    if to_file and not Path(arguments.json_out).absolute().parent.is_dir():
-        raise InputError(f"--json-out {arguments.json_out}: its folder is not there; make it first")
-    if to_file and Path(arguments.json_out).is_dir():
-        raise InputError(f"--json-out {arguments.json_out}: that is a folder; name a file")
+    file = check_file("--json-out", arguments.json_out)
+    if arguments.set and arguments.what in ("table1", "figures"):
+        raise InputError(
+            f"--set has no effect: {arguments.what} does not run a navigator to be set"
+        )
+    settings = read_settings(arguments.set, "default")
     if arguments.docs is not None:
         _check(arguments.docs)
     asked = Asked(
@@ -30,6 +33,7 @@ def execute(arguments: argparse.Namespace) -> int:
         arguments.out or Path("out/paper"),
         arguments.workers or os.cpu_count() or 1,
         progress=True,
+        settings=settings,
     )
     names = list(REPORTS) if arguments.what == "all" else [arguments.what]
     result: dict[str, Any] = {"seed": asked.seed, "maps": asked.maps}
@@ -47,8 +51,8 @@ def execute(arguments: argparse.Namespace) -> int:
         give(REPORTS[name](asked))
     if arguments.what == "all":
         give(report_targets(result))
-    if to_file:
-        write_json(arguments.json_out, result)
+    if file is not None:
+        write_json(file, result)
     if arguments.json_out == "-":
         print(as_json(result))
     else:

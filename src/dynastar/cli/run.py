@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from dynastar import io, metrics
+from dynastar.bench.settings import merged, read_settings
+from dynastar.cli.outputs import make_folder
 from dynastar.cli.show import as_json, as_table
 from dynastar.episode import Episode
-from dynastar.errors import ScenarioError
 from dynastar.io.files import write_json
 from dynastar.simulation import Scenario
 
@@ -22,8 +23,9 @@ def execute(arguments: argparse.Namespace) -> int:
         scenario = replace(scenario, seed=arguments.seed)
     if arguments.preset is not None:
         scenario = replace(scenario, preset=arguments.preset)
-    folder = arguments.out or Path("out", safe_name(scenario))
-    make_folder(folder)
+    settings = read_settings(arguments.set, scenario.preset, scenario.navigator)
+    scenario = replace(scenario, navigator=merged(scenario.navigator, settings))
+    folder = make_folder("--out", arguments.out or Path("out", safe_name(scenario)))
     episode = io.run(scenario, progress=True)
     summary = metrics.measure(episode)._asdict()
     write_folder(folder, episode, summary, gif=not arguments.no_gif)
@@ -36,16 +38,6 @@ def execute(arguments: argparse.Namespace) -> int:
 def safe_name(scenario: Scenario) -> str:
     """The scenario's name as the name of a folder."""
     return re.sub(r"[^\w-]+", "_", scenario.name).strip("_") or "scenario"
-
-
-def make_folder(folder: Path) -> None:
-    """Makes ``folder`` before anything is driven; ScenarioError if it cannot be."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ScenarioError(
-            f"--out {folder}: cannot make this folder ({error.strerror}); name another"
-        ) from error
 
 
 def write_folder(folder: Path, episode: Episode, summary: dict[str, Any], gif: bool) -> None:

@@ -1,0 +1,194 @@
+"""Two results of the same missions side by side.
+
+The verdict on a suite, in words, follows a rule:
+
+1. Success is an arrival (or a right word that there is no way) without contact. If McNemar's exact test
+   on the missions that only one of both succeeded in has p < 0.05, the one with more is better.
+2. Otherwise, if both arrived in at least ``FEWEST`` missions and the 95 % bootstrap interval of the mean
+   difference of their times leaves out 0, the faster one is better.
+3. Otherwise there is no clear difference.
+"""
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from dynastar.bench.statistics import bootstrap, mcnemar, succeeded
+from dynastar.errors import InputError
+from dynastar.io.files import MAX_TEXT_BYTES, read_bytes
+
+Row = Mapping[str, Any]
+Result = Mapping[str, Any]
+
+SIGNIFICANT = 0.05
+FEWEST = 6  # pairs that say anything about time: 2 / 2^6 < 0.05
+CONDITIONS = ("preset", "controller", "settings", "ideal")  # by which two results may differ
+COUNTS = ("missions", "succeeded", "contacts_moving", "contacts_resting", "score", "time_ratio")
+SHOWN = 10  # numbers in a message
+
+
+def load_result(file: str | Path) -> dict[str, Result]:
+    """The results in a JSON file of ``bench SUITE`` or ``bench all``, by suite; InputError."""
+    path = Path(file)
+    try:
+        data = json.loads(read_bytes(path, MAX_TEXT_BYTES, InputError))
+    except ValueError:
+        raise InputError(f"{path}: this is not JSON") from None
+    suites = data.get("suites", {data.get("suite"): data}) if isinstance(data, dict) else {}
+    for result in suites.values() if isinstance(suites, dict) else [None]:
+        if not (isinstance(result, dict) and _is_rows(result.get("rows"))):
+            suites = {}
+            break
+    if not suites:
+        raise InputError(
+            f"{path}: expected the --json-out of `dynastar bench SUITE` or `bench all`"
+        )
+    return suites
+
+
+def compare(first: Mapping[str, Result], second: Mapping[str, Result]) -> dict[str, Any]:
+    """The comparison of each suite that both have, and the names of those that one lacks.
+
+    Raises InputError if they share no suite, or if the missions of a suite differ.
+    """
+    shared = [name for name in first if name in second]
+    if not shared:
+        raise InputError(
+            f"no suite is in both files: {', '.join(first)} in the first, {', '.join(second)} in the "
+            "second"
+        )
+    alone = sorted(set(first).symmetric_difference(second))
+    compared = {name: compare_suite(name, first[name], second[name]) for name in shared}
+    return {"suites": compared, "not_compared": alone}
+
+
+def compare_suite(name: str, first: Result, second: Result) -> dict[str, Any]:
+    """Changed outcomes, paired differences (second less first) and the verdict on one suite."""
+    pairs = _paired(name, first["rows"], second["rows"])
+    changed = [
+        {
+            "number": a["number"],
+            "repeat": a.get("repeat", 0),
+            "from": a["outcome"],
+            "to": b["outcome"],
+        }
+        for a, b in pairs
+        if a["outcome"] != b["outcome"]
+    ]
+    only_first = [a["number"] for a, b in pairs if succeeded(a) and not succeeded(b)]
+    only_second = [a["number"] for a, b in pairs if succeeded(b) and not succeeded(a)]
+    p = mcnemar(len(only_first), len(only_second))
+    time, length = _difference(pairs, "time"), _difference(pairs, "length")
+    return {
+        "missions": len(pairs),
+        "conditions": {
+            key: [first.get(key), second.get(key)]
+            for key in CONDITIONS
+            if first.get(key) != second.get(key)
+        },
+        "totals": {key: [first.get(key), second.get(key)] for key in COUNTS},
+        "changed": changed,
+        "lost": only_first,
+        "gained": only_second,
+        "p_success": p,
+        "time": time,
+        "length": length,
+        "verdict": verdict(len(only_first), len(only_second), p, time),
+    }
+
+
+def verdict(lost: int, gained: int, p: float, time: Mapping[str, Any]) -> str:
+    """The second result against the first, in words, by the rule of this module."""
+    if p < SIGNIFICANT:
+        return (
+            f"{'better' if gained > lost else 'worse'}: {gained} missions gained, {lost} lost "
+            f"(p = {p:.2g})"
+        )
+    interval = time["interval"]
+    if time["pairs"] >= FEWEST and interval is not None and not interval[0] <= 0.0 <= interval[1]:
+        word, how = ("better", "faster") if time["mean"] < 0.0 else ("worse", "slower")
+        return f"{word}: {abs(time['mean']):.2f} s {how} on average, success alike (p = {p:.2g})"
+    return f"no clear difference: {gained} missions gained, {lost} lost (p = {p:.2g})"
+
+
+def _paired(name: str, first: Sequence[Row], second: Sequence[Row]) -> list[tuple[Row, Row]]:
+    """The rows of the same mission; InputError if a mission is in one of both alone."""
+    left, right = ({_mission(row): row for row in rows} for rows in (first, second))
+    for these, others, which in ((left, right, "first"), (right, left, "second")):
+        missing = [mission for mission in these if mission not in others]
+        if missing:
+            shown = ", ".join(map(_words, missing[:SHOWN]))
+            more = f" and {len(missing) - SHOWN} more" if len(missing) > SHOWN else ""
+            raise InputError(
+                f"the missions of {name} do not match: only the {which} file has {shown}{more}; run "
+                "both with the same --missions, --select, --repeat and --seed"
+            )
+    return [(left[mission], right[mission]) for mission in left]
+
+
+def _mission(row: Row) -> tuple[int, int, int]:
+    return row["number"], row.get("repeat", 0), row.get("seed", 0)
+
+
+def _words(mission: tuple[int, int, int]) -> str:
+    number, repeat, seed = mission
+    return f"{number} (repeat {repeat}, seed {seed})"
+
+
+def _difference(pairs: Sequence[tuple[Row, Row]], key: str) -> dict[str, Any]:
+    """Second less first, where both arrived: mean, its 95 % interval, and the number of pairs."""
+    differences = [
+        b[key] - a[key]
+        for a, b in pairs
+        if a["outcome"] == b["outcome"] == "arrived"
+        and a.get(key) is not None
+        and b.get(key) is not None
+    ]
+    mean = sum(differences) / len(differences) if differences else None
+    return {"mean": mean, "interval": bootstrap(differences), "pairs": len(differences)}
+
+
+def _is_rows(rows: Any) -> bool:
+    return isinstance(rows, list) and all(
+        isinstance(row, dict) and isinstance(row.get("number"), int) and "outcome" in row
+        for row in rows
+    )
+
+
+def as_lines(compared: Mapping[str, Any]) -> list[str]:
+    """The comparison as lines of text."""
+    lines = []
+    for name, suite in compared["suites"].items():
+        lines += [f"{name}: {suite['verdict']}", *_suite_lines(suite), ""]
+    if compared["not_compared"]:
+        lines += [f"in one file only, not compared: {', '.join(compared['not_compared'])}", ""]
+    return lines[:-1]
+
+
+def _suite_lines(suite: Mapping[str, Any]) -> list[str]:
+    lines = [f"  {key}: {a} -> {b}" for key, (a, b) in suite["conditions"].items()]
+    for key, (a, b) in suite["totals"].items():
+        if a is not None or b is not None:
+            lines.append(f"  {key}: {_number(a)} -> {_number(b)}")
+    for key, unit in (("time", "s"), ("length", "m")):
+        of = suite[key]
+        if of["mean"] is not None:
+            low, high = of["interval"] or (None, None)
+            interval = f" [{_number(low, '+')}, {_number(high, '+')}]" if of["interval"] else ""
+            lines.append(
+                f"  {key}, where both arrived ({of['pairs']}): {_number(of['mean'], '+')} {unit}{interval}"
+            )
+    changes: dict[str, list[str]] = {}
+    for change in suite["changed"]:
+        repeat = f":{change['repeat']}" if change["repeat"] else ""
+        changes.setdefault(f"{change['from']} -> {change['to']}", []).append(
+            f"{change['number']}{repeat}"
+        )
+    return lines + [f"  {what}: {', '.join(numbers)}" for what, numbers in sorted(changes.items())]
+
+
+def _number(value: float | None, sign: str = "") -> str:
+    if value is None:
+        return "-"
+    return f"{value:{sign}.3f}" if isinstance(value, float) else str(value)
