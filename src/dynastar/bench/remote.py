@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import Any
 
-from dynastar.errors import InputError
+from dynastar.errors import DynastarError, InputError
 
 Row = dict[str, Any]
 
@@ -25,20 +25,28 @@ def completed_remotely(
     """The index of each job and its row as they are completed on the cluster at ``address``.
 
     Raises InputError if Dask is not installed, the scheduler cannot be reached, it has no workers, or
-    a worker has another version of the code.
+    a worker has another version of the code; DynastarError if a job kills one worker after the other,
+    or the scheduler is lost.
     """
     client = _client(address)
     try:
         _check_workers(client, address)
-        from distributed import as_completed
+        from distributed import CancelledError, KilledWorker, as_completed
 
         calls = client.map(partial(_alone, work), list(jobs), pure=False, retries=RETRIES)
         index_of = {future.key: index for index, future in enumerate(calls)}
-        for future in as_completed(calls):
+        for future in as_completed(calls, loop=client.loop):
             # A result that was lost with its worker is computed again, and the key comes twice.
             index = index_of.pop(future.key, None)
-            if index is not None:
-                yield index, future.result()
+            if index is None:
+                continue
+            try:
+                row = future.result()
+            except KilledWorker:
+                raise DynastarError(f"--dask: every worker that took job {index} died") from None
+            except CancelledError:
+                raise DynastarError(f"--dask {address}: the scheduler was lost") from None
+            yield index, row
     finally:
         client.close()
 

@@ -126,8 +126,17 @@ def parse_select(text: str) -> Slice:
 
 
 def load_suite(name: str) -> Suite:
-    """The suite of that name; ConfigError, with the nearest name, if there is none."""
-    return cast(Suite, import_module(choose(name, SUITES, "suite")))
+    """The suite of that name; ConfigError, with the nearest name, if there is none.
+
+    DataError if it needs a package that is not installed.
+    """
+    try:
+        return cast(Suite, import_module(choose(name, SUITES, "suite")))
+    except ModuleNotFoundError as error:
+        raise DataError(
+            f"the suite {name} needs the package {error.name}, which is not installed; the extras of "
+            "dynastar are in its README"
+        ) from None
 
 
 def data_folder(options: Options, suite: str, holds: str) -> Path:

@@ -46,9 +46,13 @@ def bootstrap(values: Sequence[float]) -> Interval | None:
 
 
 def succeeded(row: Row) -> bool:
-    """Whether a mission ended as it should: arrived, or rightly said that there is no way; no contact."""
+    """Whether a mission ended as it should: arrived, or rightly said that there is no way.
+
+    Without contact, and ``right`` where the suite judges more than the end.
+    """
     touched = row.get("contacts_moving") or row.get("contacts_resting")
-    return not touched and (row["outcome"] == "arrived" or rightly_blocked(row))
+    ended = row["outcome"] == "arrived" or rightly_blocked(row)
+    return bool(ended and not touched and row.get("right", True))
 
 
 def rightly_blocked(row: Row) -> bool:

@@ -22,6 +22,8 @@ SUITES = (
     "maps",
     "office",
     "faults",
+    "random",
+    "people",
 )
 
 PLAN_EXAMPLES = """\

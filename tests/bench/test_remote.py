@@ -1,0 +1,102 @@
+"""Missions on a Dask cluster: a scheduler and two workers on the loopback."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+
+import pytest
+
+from dynastar.bench.workers import completed
+from dynastar.cli import main
+from dynastar.errors import InputError
+
+pytest.importorskip("distributed", reason="needs the extra: pip install 'dynastar[dask]'")
+
+pytestmark = pytest.mark.filterwarnings("ignore")  # of distributed, as it closes
+
+
+def launch(*words: str) -> "subprocess.Popen[str]":
+    command = [sys.executable, "-m", "distributed.cli.dask_" + words[0], *words[1:]]
+    environment = os.environ | {"OMP_NUM_THREADS": "1", "DASK_DISTRIBUTED__DASHBOARD__LINK": ""}
+    return subprocess.Popen(
+        command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, env=environment
+    )
+
+
+def said(process: "subprocess.Popen[str]", pattern: str) -> str:
+    assert process.stderr is not None
+    for line in process.stderr:
+        found = re.search(pattern, line)
+        if found:
+            return found[0]
+    raise AssertionError(f"the process ended without {pattern}")
+
+
+@pytest.fixture
+def cluster() -> Iterator[tuple[str, list["subprocess.Popen[str]"]]]:
+    """The scheduler's address and two workers' processes."""
+    options = ["--host", "127.0.0.1", "--port", "0", "--no-dashboard"]
+    processes = [launch("scheduler", *options)]
+    try:
+        address = said(processes[0], r"tcp://127\.0\.0\.1:\d+")
+        options = ["--nthreads", "1", "--no-nanny", "--no-dashboard", "--memory-limit", "0"]
+        processes += [launch("worker", address, *options) for _ in range(2)]
+        for worker in processes[1:]:
+            said(worker, "Registered to")
+        yield address, processes[1:]
+    finally:
+        for process in processes:
+            process.kill()
+            process.communicate()
+
+
+def test_no_job_is_lost_or_counted_twice_when_a_worker_is_killed(cluster):
+    address, workers = cluster
+
+    def work(job):  # defined here, so that it is sent and not imported
+        import os
+        import time
+
+        time.sleep(0.1)
+        return {"job": job, "worker": os.getpid()}
+
+    jobs = list(range(100, 130))
+    rows = []
+    for index, row in completed(work, jobs, address):
+        rows.append((index, row))
+        if len(rows) == 6:
+            workers[0].send_signal(signal.SIGKILL)
+            workers[0].wait()
+    assert sorted(index for index, _ in rows) == list(range(30))
+    assert all(row["job"] == jobs[index] for index, row in rows)
+    pids = [row["worker"] for _, row in rows]
+    assert set(pids) == {worker.pid for worker in workers}
+    assert set(pids[-10:]) == {workers[1].pid}
+
+
+@pytest.mark.slow
+def test_a_suite_gives_the_same_rows_as_here(cluster, tmp_path):
+    address, _ = cluster
+    words = ["bench", "random", "--missions", "2", "--json-out"]
+    assert main([*words, str(tmp_path / "here.json"), "--workers", "1"]) == 0
+    assert main([*words, str(tmp_path / "there.json"), "--dask", address]) == 0
+    here, there = (
+        re.sub(r'"(tick|command)_ms\w*": [\d.]+|"wall_s": [\d.]+', "", file.read_text())
+        for file in (tmp_path / "here.json", tmp_path / "there.json")
+    )
+    assert here == there
+
+
+def test_a_cluster_that_is_not_there_is_an_error_in_words(monkeypatch):
+    from dynastar.bench import remote
+
+    monkeypatch.setattr(remote, "TIMEOUT", 1)
+    began = time.monotonic()
+    for address in ("tcp://127.0.0.1:9", "nonsense://"):
+        with pytest.raises(InputError, match=rf"--dask {address}.*tcp://127"):
+            list(completed(abs, [1], address))
+    assert time.monotonic() - began < 20.0

@@ -1,0 +1,45 @@
+import math
+import multiprocessing
+import os
+
+import pytest
+
+from dynastar.bench.workers import completed, spread
+from dynastar.errors import DynastarError
+
+
+def test_one_process_works_in_order_here():
+    seen = []
+    rows = completed(lambda job: seen.append(job) or {"job": job}, [3, 1, 2], 1)
+    assert next(rows) == (0, {"job": 3})
+    assert seen == [3]
+    assert list(rows) == [(1, {"job": 1}), (2, {"job": 2})]
+
+
+def test_processes_complete_every_job_once_and_spread_keeps_the_order():
+    jobs = list(range(7))
+    assert sorted(completed(math.factorial, jobs, 2)) == [(n, math.factorial(n)) for n in jobs]
+    assert list(spread(math.factorial, jobs, 2)) == [math.factorial(n) for n in jobs]
+
+
+def test_processes_have_one_thread_and_the_environment_stays(monkeypatch):
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    monkeypatch.delenv("NUMBA_NUM_THREADS", raising=False)
+    assert set(spread(os.getenv, ["OMP_NUM_THREADS", "NUMBA_NUM_THREADS"], 2)) == {"1"}
+    assert os.environ["OMP_NUM_THREADS"] == "7"
+    assert "NUMBA_NUM_THREADS" not in os.environ
+
+
+def test_a_worker_that_is_killed_is_an_error_in_words():
+    with pytest.raises(DynastarError, match="a worker process was killed"):
+        list(completed(os._exit, [1, 1], 2))
+
+
+def test_who_leaves_early_leaves_no_process_behind():
+    before = set(multiprocessing.active_children())
+    rows = completed(math.factorial, list(range(50)), 2)
+    next(rows)
+    rows.close()
+    for child in set(multiprocessing.active_children()) - before:
+        child.join(timeout=10.0)
+    assert set(multiprocessing.active_children()) <= before
