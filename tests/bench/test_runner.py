@@ -86,6 +86,49 @@ def test_missions_counts_after_leaving_out() -> None:
     assert choose_missions(made, Options(missions=3))[1] == 2
 
 
+def test_quick_spreads_over_the_suite_and_gives_way() -> None:
+    made = suite(lambda: range(10, 30), left_out={15, 16})
+    made.QUICK_MISSIONS = 4
+    quick = Options(quick=True)
+    chosen, skipped = choose_missions(made, quick)
+    assert [mission.number for mission in chosen] == [10, 17, 20, 25]
+    assert skipped == 2
+    made.QUICK_MISSIONS = 99
+    assert len(choose_missions(made, quick)[0]) == 18
+    endless = suite(count, default=4, left_out={1})
+    endless.QUICK_MISSIONS = 3
+    assert [m.number for m in choose_missions(endless, quick)[0]] == [0, 2, 3]
+    with pytest.raises(InputError, match="--quick"):
+        choose_missions(made, Options(quick=True, missions=3))
+
+
+def test_a_run_goes_on_where_it_was_cut_off(tmp_path: Path) -> None:
+    keep, flown = tmp_path / "rows.jsonl", []
+    made = suite(lambda: range(11, 16))
+    whole = run_suite("made up", made, Options(repeat=2))
+    fly = made.fly
+
+    def cut_off(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
+        if len(flown) == 3:
+            raise KeyboardInterrupt
+        flown.append((mission.number, repeat))
+        return fly(mission, options, repeat)
+
+    made.fly = cut_off
+    with pytest.raises(KeyboardInterrupt):
+        run_suite("made up", made, Options(repeat=2), keep=keep)
+    made.fly = lambda *asked: flown.append((asked[0].number, asked[2])) or fly(*asked)
+    assert run_suite("made up", made, Options(repeat=2), keep=keep)["rows"] == whole["rows"]
+    assert len(flown) == len(set(flown)) == 10
+    # More missions go on, too; another seed or setting begins anew.
+    run_suite("made up", made, Options(repeat=3), keep=keep)
+    assert len(flown) == 15
+    for other in (Options(seed=1), Options(seed=1, settings={"period": 0.2}), Options(ideal=True)):
+        before = len(flown)
+        run_suite("made up", made, other, keep=keep)
+        assert len(flown) == before + 5
+
+
 def test_failures_are_rows_and_order_is_kept() -> None:
     result = run_suite("made up", suite(lambda: range(11, 16)), Options(repeat=2, seed=5))
     assert [row["number"] for row in result["rows"]] == [11, 11, 12, 12, 13, 13, 14, 14, 15, 15]

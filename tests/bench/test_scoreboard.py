@@ -1,0 +1,112 @@
+import sys
+from types import ModuleType
+
+import pytest
+
+from dynastar.bench import runner, scoreboard
+from dynastar.bench.compare import compare
+from dynastar.bench.runner import Mission, Options
+from dynastar.bench.tables import as_text
+from dynastar.errors import DataError, InputError
+from dynastar.viewer.sheet import save
+
+
+def module(name, outcomes, quick=2, **more):
+    made = ModuleType(name)
+
+    def fly(mission, options, repeat):
+        return {
+            "outcome": mission.spec,
+            "group": f"{name} {mission.number % 2}",
+            "time": 4.0,
+            "time_ratio": 2.0 if mission.spec == "arrived" else None,
+            "contacts_moving": int(mission.spec == "contact"),
+        }
+
+    made.DEFAULT_MISSIONS = None
+    made.QUICK_MISSIONS = quick
+    made.missions = lambda options: [Mission(n, o) for n, o in enumerate(outcomes)]
+    made.leave_out = lambda mission, options: ""
+    made.fly = fly
+    vars(made).update(more)
+    return made
+
+
+@pytest.fixture
+def suites(monkeypatch):
+    def no_data(options):
+        raise DataError("give --data DIR")
+
+    made = {
+        "first": module("first", ["arrived"] * 5 + ["contact"]),
+        "second": module("second", ["timeout", "arrived"], PUBLISHED=(("a", "b", "c"),)),
+        "absent": module("absent", [], missions=no_data),
+    }
+    for name, suite in made.items():
+        monkeypatch.setitem(sys.modules, f"test_suite_{name}", suite)
+    names = {name: f"test_suite_{name}" for name in made}
+    names["missing"] = "test_suite_of_a_package_that_is_not_there"
+    monkeypatch.setattr(runner, "SUITES", names)
+    monkeypatch.setattr(scoreboard, "SUITES", names)
+    return made
+
+
+def test_every_suite_is_run_or_said_to_be_left_out(suites, tmp_path):
+    result = scoreboard.run_all(Options())
+    assert {name: of["missions"] for name, of in result["suites"].items()} == {
+        "first": 6,
+        "second": 2,
+    }
+    assert result["left_out"]["absent"] == "give --data DIR"
+    assert "is not installed" in result["left_out"]["missing"]
+    assert [row["number"] for row in result["suites"]["first"]["rows"]] == list(range(6))
+    assert result["suites"]["first"]["contacts_moving"] == 1
+    text = as_text(scoreboard.table(result))
+    assert "second was left out" not in text
+    assert "absent was left out: give --data DIR" in text
+    first = next(line for line in text.splitlines() if line.startswith("first "))
+    assert first.split()[1:6] == ["6", "5", "44-97", "1", "0"]
+    assert sum(line.startswith("  first ") for line in text.splitlines()) == 2
+    file = save(scoreboard.picture(result), tmp_path / "all.png")
+    assert file.read_bytes().startswith(b"\x89PNG")
+
+
+def test_quick_spreads_a_few_missions(suites):
+    result = scoreboard.run_all(Options(quick=True))
+    assert [row["number"] for row in result["suites"]["first"]["rows"]] == [0, 3]
+    assert result["quick"]
+
+
+def test_two_of_them_can_be_compared(suites):
+    first, second = (scoreboard.run_all(Options())["suites"] for _ in range(2))
+    assert set(compare(first, second)["suites"]) == {"first", "second"}
+
+
+def test_a_run_goes_on_where_it_was_cut_off(suites, tmp_path):
+    keep, flown = tmp_path / "all.rows.jsonl", []
+    whole = scoreboard.run_all(Options())
+
+    def cut_off(mission, options, repeat):
+        if len(flown) == 3:
+            raise KeyboardInterrupt
+        flown.append(mission.number)
+        return fly(mission, options, repeat)
+
+    fly, suites["first"].fly = suites["first"].fly, cut_off
+    with pytest.raises(KeyboardInterrupt):
+        scoreboard.run_all(Options(), keep=keep)
+    suites["first"].fly = lambda *asked: flown.append(asked[0].number) or fly(*asked)
+    again = scoreboard.run_all(Options(), keep=keep)
+    assert sorted(flown) == list(range(6))
+    for name in ("first", "second"):
+        assert again["suites"][name]["rows"] == whole["suites"][name]["rows"]
+    # Other settings begin anew.
+    scoreboard.run_all(Options(seed=1), keep=keep)
+    assert len(flown) == 12
+
+
+def test_nothing_to_run_is_an_error(suites, monkeypatch):
+    for names in ("SUITES",):
+        monkeypatch.setattr(scoreboard, names, {"absent": "test_suite_absent"})
+    with pytest.raises(InputError, match="no suite can be run: give --data"):
+        scoreboard.run_all(Options())
