@@ -36,7 +36,8 @@ def collect(
     with written_aside(file) as aside:
         text = "".join(json.dumps(jsonable(line)) + "\n" for line in lines)
         aside.write_text(text, encoding="utf-8")
-    shown = tqdm(total=len(jobs), initial=len(jobs) - len(left), desc=name, disable=not progress)
+    begun = len(jobs) - len(left)
+    shown = tqdm(total=len(jobs), initial=begun, desc=name, disable=not progress, delay=1e-6)
     with file.open("a", encoding="utf-8") as kept, shown as bar:
         arrived = sum(done[key].get("outcome") == "arrived" for key in keys if key in done)
         for index, row in completed(work, [job for _, job in left], workers):

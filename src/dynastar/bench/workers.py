@@ -15,6 +15,8 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from typing import Any
 
+from tqdm import tqdm
+
 from dynastar.errors import DynastarError
 
 Workers = int | str
@@ -99,6 +101,7 @@ def settle() -> None:
     threading.Thread(target=_end_with_parent, daemon=True).start()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     cv2.setNumThreads(1)
+    tqdm.set_lock(threading.RLock())  # not one between processes, which would outlast a killed worker
     sys.stdout = sys.stderr
 
 

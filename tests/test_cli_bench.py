@@ -1,0 +1,153 @@
+"""``dynastar bench`` and ``--set`` as others call them."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from dynastar.bench.runner import SUITES
+from dynastar.cli import arguments
+from test_cli import SCENARIO, finite, folder, refused, run
+
+__all__ = ["folder"]  # a fixture
+
+FILES = {"figure.png", "animation.gif", "summary.json", "episode.npz", "config.json"}
+
+
+def small_result(outcomes: list[str]) -> str:
+    rows = [{"number": n, "outcome": outcome} for n, outcome in enumerate(outcomes)]
+    return json.dumps({"suite": "small", "rows": rows})
+
+
+def test_the_help_names_every_suite() -> None:
+    assert set(arguments.SUITES) == set(SUITES)
+
+
+def test_a_mission_is_run_kept_and_replayed(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    file, again = tmp_path / "result.json", tmp_path / "again"
+    words = ["bench", "random", "--select", "0", "--workers", 1, "--set", "goal_tolerance=0.3"]
+    status, out, err = run(capsys, *words, "--json-out", file)
+    assert status == 0, err
+    result = finite(file.read_text())
+    assert result["settings"] == {"goal_tolerance": 0.3}
+    assert not (tmp_path / "result.json.rows.jsonl").exists()
+    words = ["bench", "random", "--replay", "0", "--set", "goal_tolerance=0.3", "--out", again]
+    status, out, err = run(capsys, *words, "--json-out", "-")
+    assert status == 0, err
+    (row,) = result["rows"]
+    replayed = finite(out)
+    for timed in ("command_ms_mean", "command_ms_max", "tick_ms_median", "tick_ms_p99"):
+        assert replayed.pop(timed) != row.pop(timed)
+    assert replayed == row
+    assert {path.name for path in again.iterdir()} == FILES
+    config = finite((again / "config.json").read_text())
+    assert config["config"]["goal_tolerance"] == 0.3
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["paper", "--set", "dwa.horzion=2"], "'horizon'"),
+        (["paper", "--set", "dwa.horizon"], "KEY=VALUE"),
+        (["paper", "--controller", "pure_persuit"], "'pure_pursuit'"),
+        (["paper", "--json-out", "."], "that is a folder"),
+        (["paper", "--save-failures", "file"], "--save-failures file"),
+        (["paper", "--replay", "1"], "leaves out mission 1"),
+        (["paper", "--replay", "x"], "--replay"),
+        (["paper", "--replay", "0", "--out", "file"], "--out file"),
+        (["paper", "--out", "somewhere"], "--out"),
+        (["paper", "file"], "only `bench compare` takes files"),
+        (["paper", "--quick", "--missions", "3"], "--quick"),
+        (["paper", "--dask", "nowhere", "--missions", "1"], "--dask nowhere"),
+        (["movingai", "--replay", "0"], "drives nothing"),
+        (["movingai", "--ideal"], "--ideal has no effect"),
+        (["all", "--select", "3"], "--select goes with one suite"),
+        (["all", "--set", "horizon=2"], "horizon"),
+        (["compare", "a.json"], "two results"),
+        (["compare", "a.json", "b.json"], "a.json: there is no such file"),
+        (["compare", "file", "file"], "file: the file is empty"),
+    ],
+)
+def test_bad_arguments(
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    words: list[str],
+    said: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").touch()
+    assert said in refused(run(capsys, "bench", *words))
+    assert {path.name for path in tmp_path.iterdir()} <= {"file", "out"}
+
+
+def test_compare(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    first, second, file = (tmp_path / f"{name}.json" for name in ("a", "b", "out"))
+    first.write_text(small_result(["timeout"] * 6))
+    second.write_text(small_result(["arrived"] * 6))
+    status, out, _ = run(capsys, "bench", "compare", first, second, "--json-out", file)
+    assert status == 0
+    assert out.startswith("small: better: 6 missions gained, 0 lost (p = 0.031)")
+    assert finite(file.read_text())["suites"]["small"]["gained"] == list(range(6))
+    status, out, _ = run(capsys, "bench", "compare", first, first, "--json-out", "-")
+    assert finite(out)["suites"]["small"]["changed"] == []
+    second.write_text(small_result(["arrived"] * 5))
+    assert "only the first file has 5" in refused(run(capsys, "bench", "compare", first, second))
+
+
+def test_run_takes_settings(capsys: pytest.CaptureFixture[str], folder: Path) -> None:
+    (folder / "drive.toml").write_text(SCENARIO + "[navigator]\nperiod = 0.2\n")
+    words = ["run", folder / "drive.toml", "--out", folder / "out", "--no-gif", "--json"]
+    status, _, err = run(capsys, *words, "--set", "dwa.horizon=2.5", "--set", "reverse=false")
+    assert status == 0, err
+    config = finite((folder / "out" / "config.json").read_text())
+    assert config["config"]["dwa"]["horizon"] == 2.5
+    assert (config["config"]["reverse"], config["config"]["period"]) == (False, 0.2)
+    assert config["scenario"]["navigator"]["dwa"] == {"horizon": 2.5}
+    assert "'period'" in refused(run(capsys, *words, "--set", "peroid=0.1"))
+
+
+def test_paper_takes_settings_where_they_matter(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    words = ["paper", "--out", tmp_path, "--set"]
+    assert "'horizon'" in refused(run(capsys, *words, "dwa.horizno=2"))
+    assert "table1" in refused(run(capsys, "paper", "table1", *words[1:], "dwa.horizon=2"))
+
+
+@pytest.mark.slow
+def test_a_run_that_is_interrupted_goes_on(tmp_path: Path) -> None:
+    file = tmp_path / "result.json"
+    kept = tmp_path / "result.json.rows.jsonl"
+    words = ["bench", "random", "--missions", "4", "--workers", "2", "--json-out", str(file)]
+    command = [sys.executable, "-m", "dynastar", *words]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, start_new_session=True) as process:
+        until = time.monotonic() + 120.0
+        while time.monotonic() < until and not (
+            kept.exists() and kept.read_bytes().count(b"\n") > 1
+        ):
+            time.sleep(0.02)
+        os.killpg(process.pid, signal.SIGINT)
+        _, err = process.communicate(timeout=20.0)
+    assert process.returncode == 130, err
+    assert err.splitlines()[-1] == b"dynastar: interrupted"
+    first = kept.read_text().splitlines()
+    assert 2 <= len(first) < 5
+    done = subprocess.run(command, capture_output=True, check=True)
+    assert b"/4" in done.stderr
+    assert f" {len(first) - 2}/4".encode() not in done.stderr  # it does not begin anew
+    result = json.loads(file.read_text())
+    assert result["missions"] == 4
+    rows = {row["number"]: row for row in result["rows"]}
+    for line in first[1:]:
+        row = json.loads(line)["row"]
+        row.pop("wall_s")
+        assert rows[row["number"]] == row
+    assert not kept.exists()
