@@ -25,7 +25,11 @@ def wilson(successes: int, trials: int, z: float = Z_95) -> Interval | None:
 
 
 def mcnemar(only_first: int, only_second: int) -> float:
-    """Two-sided p of McNemar's exact test [McNemar1947]: of pairs that differ, so many for the one and the other."""
+    """Two-sided p of McNemar's exact test [McNemar1947].
+
+    Of the pairs that differ, ``only_first`` are successes of the first alone, ``only_second`` of the
+    second.
+    """
     n, fewer = only_first + only_second, min(only_first, only_second)
     tail = sum(math.comb(n, k) for k in range(fewer + 1))
     return min(1.0, 2 * tail / 2**n)

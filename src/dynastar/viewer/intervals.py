@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 from dynastar.viewer import palette
 from dynastar.viewer.sheet import PAGE, SMALL, legend_style, plain, room, sheet
 
-LINE, LETTER, GAP, LOW, TOP = 0.24, 0.055, 0.25, 0.6, 0.1  # inches
+LINE, LETTER, GAP, LOW, TOP = 0.24, 0.055, 0.25, 0.5, 0.1  # inches
 COLOURS = (palette.FIRST_PATH, palette.DRIVEN, palette.MOVER)
 APART = 0.22  # of a row between two series
 
@@ -61,4 +61,6 @@ def _show(axes: Any, row: float, estimate: Estimate, colour: str) -> None:
     value, low, high = estimate
     if low is not None and high is not None:
         axes.plot([low, high], [row, row], color=colour, linewidth=0.9, solid_capstyle="butt")
-    axes.plot([value], [row], color=colour, marker="o", markersize=3.2, linestyle="none")
+    axes.plot(
+        [value], [row], color=colour, marker="o", markersize=3.2, linestyle="none", clip_on=False
+    )
