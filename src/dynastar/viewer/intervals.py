@@ -38,7 +38,7 @@ def draw_intervals(measures: Sequence[Measure], groups: Sequence[str]) -> Figure
             for row, group in enumerate(groups):
                 if group in values:
                     _show(axes, row + offset, values[group], COLOURS[number])
-        axes.set(ylim=(len(groups) - 0.5, -0.5), xlabel=measure.label)
+        axes.set(ylim=(max(len(groups), 1) - 0.5, -0.5), xlabel=measure.label)
         axes.set_xlim(*measure.limits)
         axes.set_yticks(range(len(groups)), groups if place == 0 else [""] * len(groups))
         axes.xaxis.set_major_locator(MaxNLocator(4))
