@@ -187,7 +187,8 @@ def _print_failures(rows: Sequence[Mapping[str, Any]]) -> None:
     for row in failed[:SHOWN_FAILURES]:
         reason = (row.get("reason") or "no reason given").partition("\n")[0]
         repeat = f":{row['repeat']}" if row.get("repeat") else ""
-        print(f"mission {row['number']}{repeat}: {row['outcome']}, {reason}")
+        judged = ", but not as the suite asks" if row.get("right") is False else ""
+        print(f"mission {row['number']}{repeat}: {row['outcome']}{judged}, {reason}")
     if len(failed) > SHOWN_FAILURES:
         print(f"and {len(failed) - SHOWN_FAILURES} more that failed")
     if failed:
