@@ -1,7 +1,9 @@
 """Pedestrians who avoid walls, one another and the robot, simulated by JuPedSim (an extra).
 
 The model is JuPedSim's anticipation velocity model [Xu2021]. The robot is one of its agents and is
-moved to its true pose in every step. The model keeps pedestrians off walls by a soft force only, so a
+moved to its true pose in every step. Pedestrians whom others hold up, as in a door, go back to the
+waypoint before after 2 to 4 s, each after another time, since in the model they would stand there for
+good. The model keeps pedestrians off walls by a soft force only, so a
 pedestrian's position is what the model says, moved to the nearest place where its disc touches no wall.
 """
 
@@ -27,8 +29,12 @@ INSTALL = "pip install 'dynastar[pedestrians]'"
 
 STEP = 0.05  # s, one step of the pedestrian model
 WALL_GAP = 0.01  # m kept between a pedestrian's disc and a wall
-NEAR_WAYPOINT = 0.5  # m from a waypoint at which it counts as reached
+NEAR_WAYPOINT = 1.0  # m from a waypoint at which it counts as reached: a robot may stand there
+STUCK = 0.15  # m within which a pedestrian has not got on
 SEAM = 1e-3  # m by which the walkable area is shrunk, so that its outline is simple
+ROBOT_MARGIN = 0.1  # m that pedestrians keep from a robot beyond what they keep from each other
+THIN = 0.01  # m, the radius with which the robot's agent comes in, so that nobody refuses it
+MOST_LAG = 0.02  # m between the robot's agent and where it was told to go
 ROBOT_TIME_GAP = 0.01  # s, so small that other agents do not hold the robot's agent back
 
 
@@ -71,11 +77,12 @@ class Crowd:
         for shape in (self._area, *self._clear):
             shapely.prepare(shape)
         try:
-            self._start(pedestrians, footprint.circumscribed, seed)
+            self._start(pedestrians, footprint.circumscribed + ROBOT_MARGIN, seed)
         except RuntimeError as error:
             raise ScenarioError(f"the pedestrians cannot start: {error}") from error
         self._steps = 0
         self._before = self._after = self._positions()
+        self._stood, self._since = self._after.copy(), np.zeros(len(self._radii), np.int64)
 
     def at(self, time: float) -> Floats:
         """Centres (m, 2) in metres at ``time`` (s), which lies in the step advanced to last."""
@@ -88,6 +95,7 @@ class Crowd:
         while self._steps * STEP <= time + 1e-9:
             self._move_robot(pose)
             self._simulation.iterate()
+            self._turn_back(self._after)
             self._before, self._after = self._after, self._positions()
             self._steps += 1
 
@@ -97,6 +105,7 @@ class Crowd:
         model = jupedsim.AnticipationVelocityModel(rng_seed=seed)
         self._simulation: Any = jupedsim.Simulation(model=model, geometry=self._area, dt=STEP)
         self._walkers: list[int] = []
+        self._journeys: list[tuple[int, list[int]]] = []
         for pedestrian in pedestrians:
             stages = [
                 self._simulation.add_waypoint_stage((float(x), float(y)), NEAR_WAYPOINT)
@@ -106,17 +115,19 @@ class Crowd:
             for here, onward in zip(stages, [*stages[1:], stages[0]], strict=True):
                 towards = jupedsim.Transition.create_fixed_transition(onward)
                 journey.set_transition_for_stage(here, towards)
+            self._journeys.append((self._simulation.add_journey(journey), stages))
             parameters = jupedsim.AnticipationVelocityModelAgentParameters(
                 position=pedestrian.start,
                 desired_speed=pedestrian.speed,
                 radius=pedestrian.radius,
-                journey_id=self._simulation.add_journey(journey),
+                journey_id=self._journeys[-1][0],
                 stage_id=stages[0],
             )
             self._walkers.append(self._simulation.add_agent(parameters))
         self._steering = self._simulation.add_direct_steering_stage()
         self._driving = self._simulation.add_journey(jupedsim.JourneyDescription([self._steering]))
         self._robot: int | None = None
+        self._robot_at = (math.nan, math.nan)  # where its agent was told to go
         self._robot_radius = robot_radius
 
     def _add_robot(self, x: float, y: float) -> None:
@@ -125,7 +136,7 @@ class Crowd:
         parameters = jupedsim.AnticipationVelocityModelAgentParameters(
             position=(x, y),
             desired_speed=0.0,
-            radius=self._robot_radius,
+            radius=THIN,
             journey_id=self._driving,
             stage_id=self._steering,
             time_gap=0.1,
@@ -137,10 +148,15 @@ class Crowd:
             self._robot = self._simulation.add_agent(parameters)
         except RuntimeError:  # it stands in somebody: try again in the next step
             return
-        self._simulation.agent(self._robot).model.time_gap = ROBOT_TIME_GAP
+        model = self._simulation.agent(self._robot).model
+        model.time_gap, model.radius = ROBOT_TIME_GAP, self._robot_radius
+        self._robot_at = x, y
 
     def _move_robot(self, pose: Pose2D) -> None:
-        """Lets the robot's agent walk to ``pose`` within one step."""
+        """Lets the robot's agent walk to ``pose`` within one step.
+
+        An agent that others held back is taken out, and put where the robot is in the next step.
+        """
         if not self._area.contains(shapely.Point(pose.x, pose.y)):
             return
         if self._robot is None:
@@ -148,8 +164,25 @@ class Crowd:
             return
         agent = self._simulation.agent(self._robot)
         x, y = agent.position
-        agent.target = (pose.x, pose.y)
+        if math.dist((x, y), self._robot_at) > MOST_LAG:
+            self._simulation.mark_agent_for_removal(self._robot)
+            self._robot = None
+            return
+        self._robot_at = pose.x, pose.y
+        agent.target = self._robot_at
         agent.model.desired_speed = math.hypot(pose.x - x, pose.y - y) / STEP
+
+    def _turn_back(self, positions: Floats) -> None:
+        """Sends pedestrians who have not got on for their patience to the waypoint before."""
+        got_on = np.hypot(*(positions - self._stood).T) > STUCK
+        self._stood[got_on], self._since[got_on] = positions[got_on], self._steps
+        for i in np.flatnonzero(
+            (self._steps - self._since) * STEP >= 2.0 + np.arange(len(positions)) % 3
+        ):
+            walker, (journey, stages) = self._walkers[i], self._journeys[i]
+            before = stages[stages.index(self._simulation.agent(walker).stage_id) - 1]
+            self._simulation.switch_agent_journey(walker, journey, before)
+            self._since[i] = self._steps
 
     def _positions(self) -> Floats:
         found = np.array([self._simulation.agent(walker).position for walker in self._walkers])
