@@ -9,6 +9,7 @@ import numpy.typing as npt
 Mask = npt.NDArray[np.bool_]
 Field = npt.NDArray[np.float32]
 
+CHAMFER = 1.0 / 1.02  # the chamfer overestimates by less than 2 %
 FAR = 1e9  # m, the clearance where nothing is blocked
 
 
@@ -29,6 +30,12 @@ def distances(free: npt.NDArray[np.uint8], resolution: float) -> Field:
     """``distance_field`` of cells of which some are 0, blocked, and the others 1, free."""
     field = cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
     return np.multiply(field, np.float32(resolution), out=field)
+
+
+def lower_bounds(free: npt.NDArray[np.uint8], resolution: float) -> Field:
+    """``distances`` up to 2 % smaller, several times as fast: a chamfer of 5 x 5 [Borgefors1986]."""
+    field = cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_5)
+    return np.multiply(field, np.float32(resolution * CHAMFER), out=field)
 
 
 def update_window(

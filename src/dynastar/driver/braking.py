@@ -1,0 +1,105 @@
+"""The commands given, and the stop that is carried on when nothing better is admissible."""
+
+import math
+
+import numpy as np
+
+from dynastar.driver.motion import coast
+from dynastar.driver.status import RobotState
+from dynastar.geometry import Pose2D, Twist
+from dynastar.robot import Limits, slew, stopping_time
+
+REST = Twist(0.0, 0.0)
+
+
+class StopProfile:
+    """Both speeds ramp to zero in proportion from ``twist``, so the robot stays on the arc it is on.
+
+    A drive goes to what it is told at its own limit and then holds, so telling it each period's
+    end value would slow the gentler of the two too early and bend the arc. Each command is chosen
+    so that the period's mean speed is that of the ramp.
+    """
+
+    def __init__(self, twist: Twist, limits: Limits) -> None:
+        self.twist, self.limits = twist, limits
+        self.duration = stopping_time(twist, limits)
+        self.elapsed = 0.0
+
+    def next(self, current: Twist, period: float) -> Twist:
+        """The command for the coming period, from the speeds of the moment."""
+        middle = self.elapsed + 0.5 * period
+        self.elapsed += period
+        if self.elapsed >= self.duration:
+            return Twist(
+                _lead(current.v, 0.0, self.limits.v_brake, period),
+                _lead(current.omega, 0.0, self.limits.omega_brake, period),
+            )
+        left = 1.0 - middle / self.duration
+        return Twist(
+            _lead(current.v, self.twist.v * left, self.limits.v_brake, period),
+            _lead(current.omega, self.twist.omega * left, self.limits.omega_brake, period),
+        )
+
+
+def _lead(current: float, mean: float, brake: float, period: float) -> float:
+    """The value to command for ``mean`` to be the period's mean, reached at ``brake`` and held.
+
+    A drop D takes D / brake seconds, so the mean is current - D + D^2 / (2 brake period).
+    """
+    wanted = (abs(current) - abs(mean)) / (brake * period)
+    drop = brake * period * (1.0 - math.sqrt(max(0.0, 1.0 - 2.0 * max(0.0, wanted))))
+    if drop > abs(current) - 1e-9:
+        return 0.0
+    return slew(current, current - math.copysign(drop, current), brake, brake, period)
+
+
+class Commands:
+    """What was sent: where that takes the robot until a new command acts, and the stop behind it."""
+
+    def __init__(self, limits: Limits, period: float, latency: float) -> None:
+        self.limits, self.period, self.latency = limits, period, latency
+        self._sent: list[tuple[float, Twist]] = []
+        self._stop = StopProfile(REST, limits)
+
+    def when_one_acts(self, state: RobotState) -> tuple[Pose2D, Twist]:
+        """Pose and twist at the time from which a command given now acts."""
+        if self.latency <= 0.0 or not self._sent:
+            return state.pose, state.twist
+        ends = [stamp + self.latency for stamp, _ in self._sent[1:]] + [state.stamp + self.latency]
+        commands, durations = [], []
+        for (stamp, twist), end in zip(self._sent, ends, strict=True):
+            span = end - max(stamp + self.latency, state.stamp)
+            if span > 1e-9:
+                commands.append(twist)
+                durations.append(span)
+        if not durations:
+            return state.pose, state.twist
+        x, y, theta, v, omega = coast(
+            *state.pose, *state.twist, np.array(commands), np.array(durations), self.limits
+        )
+        return Pose2D(x, y, theta), Twist(v, omega)
+
+    def send(self, state: RobotState, command: Twist | None) -> Twist:
+        """Notes a command that has a certified stop; None carries the last one's stop on."""
+        if command is None:
+            return self.brake(state)
+        self._stop = StopProfile(command, self.limits)
+        self._note(state.stamp, command)
+        return command
+
+    def brake(self, state: RobotState) -> Twist:
+        """Carries the last certified stop on."""
+        finite = all(math.isfinite(number) for number in (state.stamp, *state.pose, *state.twist))
+        if finite:
+            twist = self.when_one_acts(state)[1]
+        else:
+            twist = self._sent[-1][1] if self._sent else REST
+        command = self._stop.next(twist, self.period)
+        if finite:
+            self._note(state.stamp, command)
+        return command
+
+    def _note(self, now: float, command: Twist) -> None:
+        self._sent.append((now, command))
+        while len(self._sent) > 1 and self._sent[1][0] + self.latency <= now:
+            self._sent.pop(0)

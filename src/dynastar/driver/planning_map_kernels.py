@@ -1,0 +1,78 @@
+"""What the obstacle layer shows, taken over into the chart's cells that lie under it."""
+
+import math
+
+import numpy as np
+
+from dynastar.compiled import njit
+from dynastar.perception.local_map import SEEN_FREE, SEEN_OCCUPIED, UNSEEN
+
+OFF = -1  # the index of what lies off the chart
+
+
+@njit(cache=True)
+def cells_under(n, resolution, x0, y0, frame_resolution, frame_x, frame_y, yaw, rows, columns):
+    """Which cell of the chart lies under each of a layer's, and the window [low, high) they are in.
+
+    The layer has n x n cells and its low corner at (x0, y0); the frame is the chart's, of rows x
+    columns cells. The cell is an index (n, n) into the flattened chart, or ``OFF``.
+    """
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    low, high = np.array((rows, columns), np.int64), np.zeros(2, np.int64)
+    under = np.empty((n, n), np.int64)
+    for i in range(n):
+        dy = (i + 0.5) * resolution + y0 - frame_y
+        for j in range(n):
+            dx = (j + 0.5) * resolution + x0 - frame_x
+            row = int(math.floor((cos * dy - sin * dx) / frame_resolution))
+            column = int(math.floor((cos * dx + sin * dy) / frame_resolution))
+            inside = 0 <= row < rows and 0 <= column < columns
+            under[i, j] = row * columns + column if inside else OFF
+            if inside:
+                low[0], low[1] = min(low[0], row), min(low[1], column)
+                high[0], high[1] = max(high[0], row + 1), max(high[1], column + 1)
+    return np.minimum(low, high), high, under
+
+
+@njit(cache=True)
+def take_over(states, under, low, high, marks, known, unknown, seen, cleared):
+    """Brings ``seen`` and ``cleared`` up to date; returns the window (row, end, column, end) that changed.
+
+    Seen is what a layer's ``states`` show occupied off the ``known`` obstacles, until they show it
+    free; cleared is what they show free of the ``unknown``. ``marks`` is room to work in.
+    """
+    marks[low[0] : high[0], low[1] : high[1]] = 0
+    flat = marks.reshape(-1)
+    for i in range(states.shape[0]):
+        for j in range(states.shape[1]):
+            if states[i, j] != UNSEEN and under[i, j] != OFF:
+                flat[np.uint64(under[i, j])] |= states[i, j]
+    top, bottom, left, right = int(high[0]), int(low[0]), int(high[1]), int(low[1])
+    first = np.uint64(low[1])
+    for row in range(low[0], high[0]):
+        marked, is_known, is_unknown = marks[row], known[row], unknown[row]
+        was_seen, was_cleared = seen[row], cleared[row]
+        for i in range(high[1] - low[1]):
+            column = first + np.uint64(i)
+            mark = marked[column]
+            if mark == 0:
+                continue
+            occupied = (mark & SEEN_OCCUPIED) != 0 and not is_known[column]
+            free = (mark & SEEN_FREE) != 0
+            now_seen = occupied or (was_seen[column] and not free)
+            now_cleared = (was_cleared[column] or free) and is_unknown[column]
+            if now_seen != was_seen[column] or now_cleared != was_cleared[column]:
+                was_seen[column], was_cleared[column] = now_seen, now_cleared
+                top, bottom = min(top, row), max(bottom, row + 1)
+                left, right = min(left, low[1] + i), max(right, low[1] + i + 1)
+    return top, bottom, left, right
+
+
+@njit(cache=True)
+def stands_under(under, prior, seen, cleared, blocked):
+    """Fills ``blocked`` (n, n): whether something stands under each of a layer's cells, or no chart."""
+    prior, seen, cleared = prior.reshape(-1), seen.reshape(-1), cleared.reshape(-1)
+    for i in range(under.shape[0]):
+        for j in range(under.shape[1]):
+            at = under[i, j]
+            blocked[i, j] = at == OFF or (prior[at] and not cleared[at]) or seen[at]

@@ -1,0 +1,48 @@
+"""What goes into a navigator and what it tells: the robot's state, and the status of a tick."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from dynastar.driver.dynamic_window import Choice
+from dynastar.errors import PlanningError
+from dynastar.geometry import Pose2D, Twist
+from dynastar.grid import GridFrame
+from dynastar.perception import Track
+from dynastar.planning import Plan
+
+STATES = (
+    "idle", "following", "avoiding", "waiting", "turning", "recovering", "arrived", "blocked",
+    "sensor_lost",
+)  # fmt: skip
+
+
+class RobotState(NamedTuple):
+    """Where the robot is in the map frame and how it moves, at ``stamp`` seconds."""
+
+    stamp: float
+    pose: Pose2D
+    twist: Twist
+
+
+@dataclass(frozen=True)
+class Status:
+    """What the navigator is doing and why, and what its last tick considered.
+
+    ``state`` is one of ``STATES``. ``plan_id`` rises with every new plan; the plan's cells belong to
+    ``planning_frame``. ``limited_by`` says what kept the last command from being faster, ``error``
+    why no plan could be made, if that is what stopped it.
+    """
+
+    state: str = "idle"
+    reason: str = "no goal"
+    replans: int = 0
+    recoveries: int = 0
+    plan: Plan | None = None
+    plan_id: int = 0
+    plan_reason: str = ""
+    planning_frame: GridFrame = GridFrame(1.0)
+    tracks: tuple[Track, ...] = ()
+    limited_by: str = ""
+    goals_left: int = 0
+    error: PlanningError | None = None
+    choice: Choice | None = None
