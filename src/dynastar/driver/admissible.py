@@ -31,6 +31,8 @@ def clear_along(field, body, margin, start, pose, length, angle):
     left = spare(field, body, margin, start, pose)
     if left < -1e-6:
         return False
+    if sweep <= 0.0:
+        return True
     while left < (1.0 - fraction) * sweep:
         fraction = min(1.0, fraction + max(left, smallest) / sweep)
         left = spare(field, body, margin, start, moved(pose, fraction * length, fraction * angle))

@@ -1,7 +1,8 @@
 """The search over the window: every sample's futures are rolled out and scored, the best is taken.
 
 A future holds the sample for a short or a long time; then the robot follows the cost-to-go, stops,
-or backs off. Risk is looked for up to the horizon, progress up to a time before that.
+or backs off. Risk is looked for up to the horizon; progress is the mean of what the cost-to-go has
+fallen by after the shorter hold and after a longer time, so that to put it off costs something.
 """
 
 import math
@@ -20,8 +21,8 @@ FOLLOW, STOP, BACK = range(3)
 SLACK = (
     0.02  # m that a roll-out may come nearer to an obstacle than the robot is, inside the margin
 )
-LOOK = 0.25  # m ahead of the robot where the cost-to-go is read, too
-TURN_COST = 0.25  # of the way that would be driven in the time that turning to the descent takes
+OVERSHOOT = 0.25  # m that the robot may stop beyond the end of its path
+TURN_COST = 1.0  # of the way that would be driven in the time that turning to the descent takes
 BEST_GAIN = 2.0  # decrease of the cost-to-go over a metre, at most, for what is worth looking at
 
 
@@ -48,13 +49,11 @@ def turn_to_descent(field, pose):
 
 @njit(cache=True)
 def pose_value(field, limits, pose, v):
-    """The cost-to-go (m) of a pose and speed: at its place and ahead of it, turning and overshooting."""
-    x, y, cos, sin = pose
-    left = value_at(field, x, y)
-    value = 0.5 * (left + value_at(field, x + LOOK * cos, y + LOOK * sin))
+    """The cost-to-go (m) of a pose and speed: its place's, turning and overshooting."""
+    left = value_at(field, pose[0], pose[1])
     turning = limits.v_max * abs(turn_to_descent(field, pose)) / limits.omega_max
-    too_far = max(0.0, 0.5 * v * v / limits.v_brake - max(left, 0.0) - LOOK)
-    return value + TURN_COST * turning + too_far
+    too_far = max(0.0, 0.5 * v * v / limits.v_brake - max(left, 0.0) - OVERSHOOT)
+    return left + TURN_COST * turning + too_far
 
 
 @njit(cache=True)
@@ -78,12 +77,13 @@ def future(
     ``begin`` is the cost-to-go now, ``worst`` (m, hypotheses) room for the risk.
     """
     pose, v, omega = state
-    need = min(0.0, least_clearance(scene.obstacles, body, pose) - scene.margin) - SLACK
-    scale = limits.v_max * span.step * span.value_steps
+    gap = least_clearance(scene.obstacles, body, pose) - scene.margin
+    need = min(0.0, gap) - SLACK
+    scale = 0.5 * limits.v_max * span.step * (span.steps + span.value_steps)
     most = limits.v_max * span.step * BEST_GAIN
     people = len(scene.people.now) > 0
     worst[:] = 0.0
-    clear, gap, value = np.inf, np.inf, np.inf
+    clear, soon, late = gap, 0.0, 0.0
     blocked = False
     last = span.horizon_steps if people else span.value_steps
     k = 0
@@ -110,19 +110,19 @@ def future(
         if people:
             t = k * span.step
             note_risk(scene.people, k - 1, t, pose[0], pose[1], span.risk_radius, worst)
-        if k == span.value_steps:
-            value = pose_value(scene.cost_to_go, limits, pose, v)
-        if k == held or k == span.value_steps or k % 8 == 0:
-            here = value
-            if k < span.value_steps:
-                here = pose_value(scene.cost_to_go, limits, pose, v)
-                here -= most * (span.value_steps - k)
-            terms[HEADING] = progress(begin, here, scale)
+        if k == span.steps or k == held or k == span.value_steps or k % 8 == 0:
+            here = pose_value(scene.cost_to_go, limits, pose, v)
+            if k == span.steps:
+                soon = here
+            if k == span.value_steps:
+                late = here
+            at_best = late if k >= span.value_steps else here - most * (span.value_steps - k)
+            terms[HEADING] = progress(begin, 0.5 * (soon + at_best), scale)
             terms[DIST], terms[VEL], terms[SIMI] = 1.0, vel(sample[0], limits.v_max), 0.0
             terms[RISK] = risk(scene.people, worst)
-            if objective(weights, terms) < enough:
+            if k >= span.steps and objective(weights, terms) < enough:
                 return False
-    terms[HEADING] = progress(begin, value, scale)
+    terms[HEADING] = progress(begin, 0.5 * (soon + late), scale)
     terms[DIST] = dist(clear, span.comfort)
     terms[RISK] = risk(scene.people, worst)
     return True
