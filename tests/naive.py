@@ -297,3 +297,19 @@ def straight_lines(clear, points):
             if length[here] + step < length[there] and clear(points[here], points[there]):
                 length[there] = length[here] + step
     return length[len(points) - 1]
+
+
+def spare_of_rule(centres, footprint, margin, start, pose):
+    """Metres that a footprint at ``pose`` (x, y, cos, sin) keeps beyond what it has to, cell by cell.
+
+    It has to keep ``margin`` from each of ``centres`` (k, 2), or what it kept at ``start``.
+    """
+
+    def gaps(at):
+        x, y, cos, sin = at
+        if footprint.is_disc:
+            return np.maximum(np.hypot(*(centres - (x, y)).T) - footprint.circumscribed, 0.0)
+        placed = footprint.vertices @ np.array([[cos, sin], [-sin, cos]]) + (x, y)
+        return shapely.distance(shapely.Polygon(placed), shapely.points(centres))
+
+    return float((gaps(pose) - np.minimum(margin, gaps(start))).min())

@@ -101,7 +101,8 @@ def settle() -> None:
     threading.Thread(target=_end_with_parent, daemon=True).start()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     cv2.setNumThreads(1)
-    tqdm.set_lock(threading.RLock())  # not one between processes, which would outlast a killed worker
+    # Not a lock between processes, which would outlast a killed worker.
+    tqdm.set_lock(threading.RLock())
     sys.stdout = sys.stderr
 
 

@@ -123,6 +123,9 @@ class DynamicWindow:
         """The best admissible command from ``pose`` and ``twist``."""
         config, limits = self.config, self.robot.limits
         window = dynamic_window(*twist, limits, float(min(v_cap, limits.v_max)), self._reach)
+        last_v = min(max(scene.last_v, window[0]), window[1])
+        last_omega = min(max(scene.last_omega, window[2]), window[3])
+        scene = scene._replace(last_v=last_v, last_omega=last_omega)
         samples, commands, terms, refused, score = self._buffers
         n = sample_window(
             window, self._speeds, self._rates, config.v_samples, config.omega_samples, samples
