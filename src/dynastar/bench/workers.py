@@ -74,9 +74,12 @@ def _in_processes(
         ) from None
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
-        if not done:  # nobody waits for the jobs that are under way
-            for child in set(multiprocessing.active_children()) - others:
+        while not done:  # nobody waits for the jobs that are under way
+            children = set(multiprocessing.active_children()) - others
+            for child in children:
                 child.kill()
+                child.join(timeout=1.0)
+            done = not children
 
 
 @contextmanager
