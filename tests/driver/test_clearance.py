@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scenes import CELL, boxed, centres_of, empty, field_of
 
 from dynastar.driver.clearance import body_distance, distance_at, polygon_distance, spare
 from dynastar.driver.dynamic_window import body_of
 from dynastar.robot import ROBOTS, Footprint, Robot
 from naive import spare_of_rule
+from scenes import CELL, boxed, centres_of, empty, field_of
 
 FOOTPRINTS = {
     "disc": Footprint.disc(0.3),
