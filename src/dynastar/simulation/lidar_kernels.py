@@ -111,14 +111,29 @@ def cast(
         if math.hypot(discs[k, 0] - x, discs[k, 1] - y) <= discs[k, 2] + range_max:
             near_discs[n_discs] = k
             n_discs += 1
-    for i in range(len(out)):
+    n = len(out)
+    dxs, dys = np.empty(n), np.empty(n)
+    for i in range(n):
         angle = first + i * increment
         dx, dy = math.cos(angle), math.sin(angle)
+        dxs[i], dys[i] = dx, dy
         hit = resolution * grid_hit(
             free, gx, gy, cos * dx + sin * dy, cos * dy - sin * dx, range_max / resolution
         )
-        for k in near_edges[:n_edges]:
-            hit = min(hit, edge_hit(x, y, dx, dy, edges[k]))
         for k in near_discs[:n_discs]:
             hit = min(hit, disc_hit(x, y, dx, dy, discs[k]))
-        out[i] = hit if hit <= range_max else math.inf
+        out[i] = hit
+    for k in near_edges[:n_edges]:
+        # Only the beams within the angle that the edge takes up, and one more on either side.
+        begin = math.atan2(edges[k, 1] - y, edges[k, 0] - x)
+        turn = math.atan2(edges[k, 3] - y, edges[k, 2] - x) - begin
+        turn -= math.tau * math.floor(turn / math.tau + 0.5)
+        low = (begin + min(turn, 0.0) - first) % math.tau
+        for start in (low, low - math.tau):
+            i0 = max(0, int(math.floor(start / increment)) - 1)
+            i1 = min(n - 1, int(math.ceil((start + abs(turn)) / increment)) + 1)
+            for i in range(i0, i1 + 1):
+                out[i] = min(out[i], edge_hit(x, y, dxs[i], dys[i], edges[k]))
+    for i in range(n):
+        if not out[i] <= range_max:
+            out[i] = math.inf
