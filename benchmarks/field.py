@@ -2,8 +2,8 @@
 
 ``dynastar.clearance.distance_field`` (OpenCV's exact transform, one thread) and scipy's
 ``distance_transform_edt`` on maps of 1000 x 1000 cells, in turns, warm, the best of some times; the
-fields are asserted to be the same to 0.001 cells. Below, what a robot has to keep up to date: an obstacle
-layer of 200 x 200 cells (10 m at 5 cm) that a scan changed or that moved on by a metre, and the same
+fields are asserted to be the same to 0.001 cells. Below, what a robot has to keep up to date: an local
+map of 200 x 200 cells (10 m at 5 cm) that a scan changed or that moved on by a metre, and the same
 window of the large map where only distances up to 2 m matter (``update_window``).
 """
 
@@ -18,8 +18,8 @@ from scipy.ndimage import distance_transform_edt
 
 from dynastar import Lidar, OccupancyGrid, Pose2D
 from dynastar.clearance import distance_field, update_window
-from dynastar.obstacles import LayerConfig, ObstacleLayer
-from dynastar.obstacles.layer_kernels import scan_points
+from dynastar.perception import LocalMap, LocalMapConfig
+from dynastar.perception.local_map_kernels import scan_points
 from dynastar.simulation.lidar import LidarSimulator
 
 N, SIDE, CELL, CAP, REPEATS = 1000, 200, 0.05, 2.0, 10
@@ -37,8 +37,8 @@ def least(*runs: Callable[[], object]) -> list[float]:
     return best
 
 
-def layer_times(occupied: np.ndarray) -> tuple[float, float]:
-    """Milliseconds to bring a layer up to date, and to move it on and do so, after a scan in mid-map."""
+def local_map_times(occupied: np.ndarray) -> tuple[float, float]:
+    """Milliseconds to bring a local map up to date, and to move it on first, after a scan in mid-map."""
     grid = OccupancyGrid.from_occupied(occupied, CELL)
     rows, columns = np.nonzero(~occupied)
     middle = int(np.hypot(rows - N / 2, columns - N / 2).argmin())
@@ -46,21 +46,21 @@ def layer_times(occupied: np.ndarray) -> tuple[float, float]:
     scan = LidarSimulator(Lidar(720, math.tau, 0.05, 12.0), grid).scan(at, 1.0)
     rest = (scan.range_min, scan.range_max, scan.angle_min, scan.angle_increment)
     points, _ = scan_points(scan.ranges, *rest, *at)
-    layer = ObstacleLayer(LayerConfig(CELL, SIDE * CELL))
-    layer.follow(at.x, at.y)
-    layer.see(scan, at, points, np.zeros(len(points), bool), 0.01, 0.0)
+    local_map = LocalMap(LocalMapConfig(CELL, SIDE * CELL))
+    local_map.follow(at.x, at.y)
+    local_map.see(scan, at, points, np.zeros(len(points), bool), 0.01, 0.0)
     aside = 0.0
 
     def move_on() -> None:
         nonlocal aside
         aside = 1.0 - aside
-        before = layer.column0
-        layer.follow(at.x + aside, at.y)
-        assert layer.column0 != before
-        layer.update(1.0)
+        before = local_map.column0
+        local_map.follow(at.x + aside, at.y)
+        assert local_map.column0 != before
+        local_map.update(1.0)
 
-    still, moved = least(lambda: layer.update(1.0), move_on)
-    assert layer.field.shape == (SIDE, SIDE)
+    still, moved = least(lambda: local_map.update(1.0), move_on)
+    assert local_map.field.shape == (SIDE, SIDE)
     return still, moved
 
 
@@ -82,7 +82,9 @@ def main() -> None:
             lambda o=occupied: distance_field(o, 1.0), lambda f=free: distance_transform_edt(f)
         )
         print(f"{name:16}{own:10.2f}{other:10.2f}{own / other:8.2f}")
-    print(f"\n{'ms, 200 x 200':16}{'layer':>10}{'moved on':>10}{'window of the map, capped':>28}")
+    print(
+        f"\n{'ms, 200 x 200':16}{'local map':>10}{'moved on':>10}{'window of the map, capped':>28}"
+    )
     for name, occupied in maps.items():
         field = np.minimum(distance_field(occupied, CELL), np.float32(CAP))
         before = field.copy()
@@ -90,7 +92,7 @@ def main() -> None:
         window = (corner, corner, SIDE, SIDE, CAP)
         (capped,) = least(lambda f=field, o=occupied, w=window: update_window(f, o, CELL, *w))
         assert np.abs(field - before).max() < 1e-3 * CELL
-        still, moved = layer_times(occupied)
+        still, moved = local_map_times(occupied)
         print(f"{name:16}{still:10.2f}{moved:10.2f}{capped:28.2f}")
 
 

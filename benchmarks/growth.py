@@ -18,11 +18,18 @@ import matplotlib
 import numpy as np
 from maps import Cell, queries, random_cells, rooms
 
-from dynastar import ROBOTS, Lidar, Navigator, NavigatorConfig, OccupancyGrid, Pose2D, RobotState
-from dynastar import Path as Line
-from dynastar.dwa import Choice, DwaConfig, Surroundings, Wish
+from dynastar import (
+    ROBOTS,
+    Goal,
+    Lidar,
+    Navigator,
+    NavigatorConfig,
+    OccupancyGrid,
+    Pose2D,
+    RobotState,
+)
+from dynastar.dwa import DwaConfig
 from dynastar.geometry import Twist
-from dynastar.obstacles import LayerConfig
 from dynastar.planning import SearchGrid
 from dynastar.simulation.lidar import LidarSimulator
 from dynastar.simulation.warm_up import warm_up
@@ -72,51 +79,52 @@ class Bench:
     def __init__(self, beams: int = 720, samples: int = 400, movers: int = 0) -> None:
         count = round(math.sqrt(samples))
         dwa = DwaConfig(v_samples=count, omega_samples=round(samples / count))
-        config = NavigatorConfig(period=PERIOD, dwa=dwa, layer=LayerConfig(size=10.0))
+        config = NavigatorConfig(period=PERIOD, dwa=dwa, stuck_time=120.0)
         occupied = np.zeros((round(HALL / 0.05),) * 2, bool)
         occupied[[0, -1]] = occupied[:, [0, -1]] = True
         grid = OccupancyGrid.from_occupied(occupied, 0.05)
         self.lidar = LidarSimulator(Lidar(beams, math.tau, 0.05, 12.0), grid)
         self.navigator = Navigator(grid, ROBOTS["pioneer3dx"], config)
+        self.navigator.set_goal(Goal(HALL - 1.0, CENTRE.y))
         self.movers, self.now = movers, 0.0
-        self.around: Surroundings | None = None
+        self.took: dict[str, float] = {}
+        self._time(self.navigator.sensing, "take_in")
+        self._time(self.navigator.window, "choose")
 
-    def sense(self) -> float:
-        """Milliseconds from the next scan to the distance field and the tracks."""
+    def tick(self) -> tuple[float, float]:
+        """Milliseconds of the next tick: from the scan to the distance field, and of the choice."""
         self.now += PERIOD
         at = 0.2 * self.now + np.arange(self.movers) * math.tau / max(self.movers, 1)
         x, y = CENTRE.x + RING * np.cos(at), CENTRE.y + RING * np.sin(at)
         discs = np.column_stack([x, y, np.full(len(at), 0.2)])
         scan = self.lidar.scan(CENTRE, self.now, discs)
-        senses, state = self.navigator.senses, RobotState(self.now, CENTRE, Twist(0.3, 0.0))
-        began = time.perf_counter()
-        fault = senses.place(state) or senses.take_in([scan], self.now, self.navigator.chart.known)
-        self.around = senses.surroundings(self.now, None)
-        took = 1e3 * (time.perf_counter() - began)
-        assert fault is None, fault
-        return took
-
-    def choose(self) -> Choice:
-        """The window's choice along a straight path."""
-        assert self.around is not None
-        path = Line(np.array([CENTRE[:2], (HALL - 1.0, CENTRE.y)])).paced(0.0, 1.65, 0.1)
-        wish = Wish((CENTRE.x + 1.5, CENTRE.y), path, 0.1, 0.55)
-        margins = self.navigator.margins
-        return self.navigator.window.choose(CENTRE, Twist(0.3, 0.0), self.around, wish, margins)
+        self.took.clear()
+        self.navigator.command(RobotState(self.now, CENTRE, Twist(0.3, 0.0)), scan)
+        return self.took["take_in"], self.took["choose"]
 
     def settled(self) -> tuple[float, float]:
-        """Milliseconds of sensing and of the choice in turns, the best, once every mover is tracked."""
+        """Milliseconds of sensing and of the choice, the best, once every mover is tracked."""
         for _ in range(20):
-            self.sense()
+            self.tick()
         took = []
         for _ in range(TICKS):
-            sensed, began = self.sense(), time.perf_counter()
-            self.choose()
-            took.append((sensed, 1e3 * (time.perf_counter() - began)))
-            assert self.around is not None
-            assert len(self.around.movers) == self.movers, (len(self.around.movers), self.movers)
+            took.append(self.tick())
+            tracks = len(self.navigator.status.tracks)
+            assert tracks == self.movers, (tracks, self.movers)
         sensed, chosen = np.array(took).min(axis=0).tolist()
         return sensed, chosen
+
+    def _time(self, part: object, name: str) -> None:
+        """Puts a clock at the door of a method of the navigator's."""
+        method = getattr(part, name)
+
+        def timed(*arguments: Any) -> Any:
+            began = time.perf_counter()
+            result = method(*arguments)
+            self.took[name] = 1e3 * (time.perf_counter() - began)
+            return result
+
+        setattr(part, name, timed)
 
 
 def window() -> Series:
@@ -125,7 +133,9 @@ def window() -> Series:
     for samples in SAMPLES:
         bench = Bench(samples=samples)
         _, chosen = bench.settled()
-        line.append((len(bench.choose().samples), chosen))
+        choice = bench.navigator.status.choice
+        assert choice is not None
+        line.append((len(choice.samples), chosen))
     return {"window": line}
 
 
@@ -194,8 +204,8 @@ def main() -> None:
     warm_up()
     panels = [
         ("Search of a prepared grid", "side of the map, cells", searches()),
-        ("Dynamic window, 30 steps", "samples", window()),
-        ("Scan to distance field, window of 10 m at 5 cm", "beams", sensing()),
+        ("Dynamic window", "samples", window()),
+        ("Scan to distance field, local map of 10 m at 5 cm", "beams", sensing()),
         ("With others about, 720 beams", "movers tracked", company()),
     ]
     for title, unit, series in panels:

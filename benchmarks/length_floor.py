@@ -20,7 +20,7 @@ import numpy.typing as npt
 from dynastar.bench import paper
 from dynastar.bench.runner import Options
 from dynastar.navigator import Navigator
-from dynastar.navigator.chart import Chart
+from dynastar.navigator.planning_map import PlanningMap
 from dynastar.path import Path
 from dynastar.planning import segment_clear
 from dynastar.simulation import Scenario
@@ -31,22 +31,22 @@ SEEN = 2  # points of a block that have to be seen
 Block = tuple[float, float, float]  # low corner (x, y) and side, m
 
 
-def chart_of(scenario: Scenario) -> Chart:
-    """The default preset's chart for the paper's robot."""
-    return Navigator(scenario.grid, scenario.robot).chart
+def map_of(scenario: Scenario) -> PlanningMap:
+    """The default preset's planning map for the paper's robot."""
+    return Navigator(scenario.grid, scenario.robot).planning_map
 
 
-def add(chart: Chart, block: Block) -> None:
+def add(planning_map: PlanningMap, block: Block) -> None:
     """Marks a block as seen."""
     x, y, side = block
-    rows, columns = np.indices(chart.prior.shape)
-    frame = chart.frame
+    rows, columns = np.indices(planning_map.prior.shape)
+    frame = planning_map.frame
     at_x = frame.x + (columns + 0.5) * frame.resolution
     at_y = frame.y + (rows + 0.5) * frame.resolution
     mask = (at_x > x) & (at_x < x + side) & (at_y > y) & (at_y < y + side)
-    chart.seen |= mask
+    planning_map.seen |= mask
     rows, columns = np.nonzero(mask)
-    chart._mark(rows.min(), rows.max() + 1, columns.min(), columns.max() + 1)
+    planning_map._mark(rows.min(), rows.max() + 1, columns.min(), columns.max() + 1)
 
 
 def visible(scenario: Scenario, solid: npt.NDArray[np.bool_], at: Path, block: Block) -> bool:
@@ -76,27 +76,27 @@ def blocks_of(scenario: Scenario, side: float) -> list[Block]:
     return found
 
 
-def planned(chart: Chart) -> Path:
+def planned(planning_map: PlanningMap) -> Path:
     """The plan from start to goal."""
-    return chart.plan(paper.START, paper.GOAL, False).path
+    return planning_map.plan(paper.START, paper.GOAL, False).path
 
 
 def followed(scenario: Scenario, blocks: list[Block]) -> float:
     """Metres that a point drives until it is within the goal's tolerance."""
-    chart = chart_of(scenario)
+    planning_map = map_of(scenario)
     solid = np.kron(scenario.grid.occupied, np.ones((4, 4), bool))
     for x, y, side in blocks:
         row, column, n = round((y - 1) * 4), round((x - 1) * 4), round(side * 4)
         solid[row : row + n, column : column + n] = True
-    hidden, path, driven, length = list(blocks), planned(chart), 0.0, 0.0
+    hidden, path, driven, length = list(blocks), planned(planning_map), 0.0, 0.0
     here = paper.START
     while np.hypot(here[0] - paper.GOAL[0], here[1] - paper.GOAL[1]) > paper.TOLERANCE:
         found = [block for block in hidden if visible(scenario, solid, here, block)]
         for block in found:
             hidden.remove(block)
-            add(chart, block)
+            add(planning_map, block)
         if found:
-            path, driven = chart.plan(here, paper.GOAL, False).path, 0.0
+            path, driven = planning_map.plan(here, paper.GOAL, False).path, 0.0
         step = min(STEP, path.length - driven)
         driven, length = driven + step, length + step
         here = path.at(driven)
@@ -115,7 +115,7 @@ def main() -> None:
         scenario = paper.world(options.seed, number)
         assert isinstance(scenario, Scenario)
         whole, half = blocks_of(scenario, 1.0), blocks_of(scenario, 0.5)
-        known = chart_of(scenario)
+        known = map_of(scenario)
         first = planned(known).length - paper.TOLERANCE
         for block in whole:
             add(known, block)

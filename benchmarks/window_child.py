@@ -16,7 +16,7 @@ from gymnasium import spaces
 from python_motion_planning.common import TYPES, DiffDriveRobot, Grid
 from python_motion_planning.controller import DWA
 
-CELL, SIDE = 0.05, 10.0  # m, as dynastar's layer
+CELL, SIDE = 0.05, 10.0  # m, as dynastar's local map
 
 
 def controller(task: dict[str, Any], grid: Grid) -> DWA:

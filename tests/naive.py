@@ -6,9 +6,6 @@ import math
 import numpy as np
 import shapely
 
-from dynastar.geometry import Twist, wrap_angle
-from dynastar.robot import arc
-
 STRAIGHT, DIAGONAL = 985, 1393  # the search's units: 1393 / 985 for sqrt(2)
 STEPS = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)]
 
@@ -159,114 +156,6 @@ def slips_through(blocked, a, b):
                 if is_blocked(r + dr, c + dc) and line.distance(corner) < 1e-9:
                     return True
     return False
-
-
-def evaluate_window(robot, config, reach, samples, pose, twist, around, wish, margins):
-    """Eqs. 7 to 9 sample by sample: (best index, refusal codes without the certified stop, terms)."""
-    limits, radius = robot.limits, robot.footprint.inscribed
-    step = config.horizon / config.steps
-    rows, columns = around.field.shape
-    refused, terms = np.zeros(len(samples), int), np.zeros((len(samples), 4))
-    gap_to_target = math.dist(wish.target, pose[:2])
-    cap, v_scale = limits.v_max, limits.v_max
-    if config.normalisation == "window":
-        low, high = samples[:-1, 0].min(), samples[:-1, 0].max()
-        cap, v_scale = min(max(min(wish.v_cap, limits.v_max), low), high), max(high - low, 1e-6)
-
-    def clearance(x, y):
-        """Bilinear between the cells' centres, less what a distance can bend between them."""
-        fx = (x - around.x0) / around.resolution - 0.5
-        fy = (y - around.y0) / around.resolution - 0.5
-        if not (0 <= fx < columns - 1 and 0 <= fy < rows - 1):
-            return 0.0
-        c, r = int(fx), int(fy)
-        corners = around.field[r : r + 2, c : c + 2].astype(float)
-        d = np.array([1 - fy + r, fy - r]) @ corners @ np.array([1 - fx + c, fx - c])
-        a = around.resolution
-        return max(0.0, d - 0.5 * a) if d <= a else d - 0.25 * a * a / d
-
-    enough = config.clearance_cap
-    if config.clearance_of_path:
-        spare = min(clearance(x, y) for x, y in wish.path) - radius - margins.standing
-        enough = min(enough, max(spare, 0.03))
-
-    for i, (v1, w1) in enumerate(samples):
-        at = pose
-        stop = max(abs(v1) / limits.v_brake, abs(w1) / limits.omega_brake)
-        must = reach + 0.5 * stop
-        gone, turned, clear, strays, aim, aim_turn = 0.0, 0.0, [], [], pose, 0.0
-        for k in range(1, max(config.steps, math.ceil(must / step)) + 1):
-            share = min(1.0, (k - 0.5) * step / reach)
-            now = Twist(twist.v + share * (v1 - twist.v), twist.omega + share * (w1 - twist.omega))
-            at = arc(at, now, step)
-            gone, turned = gone + abs(now.v) * step, turned + now.omega * step
-            free = clearance(at.x, at.y) - radius
-            if free < margins.standing and k * step <= must:
-                refused[i] = 2
-                break
-            if k > config.steps:
-                continue
-            free = max(0.0, free - margins.standing)
-            for x, y, vx, vy, r, _ in around.movers:
-                gap = math.dist((x + vx * k * step, y + vy * k * step), at[:2])
-                gap -= radius + r + margins.movers
-                if gap <= 0.0 and k * step <= must + 0.5 * stop:
-                    refused[i] = 3
-                free = min(free, max(0.0, gap))
-            if refused[i]:
-                break
-            clear.append(free)
-            place = gone / wish.spacing
-            if int(place) < len(wish.path) - 1:
-                index = np.arange(len(wish.path))
-                same = [np.interp(place, index, column) for column in wish.path.T]
-                strays.append(math.dist(same, at[:2]))
-            if gone <= 0.5 * gap_to_target:
-                aim, aim_turn = at, turned
-        if refused[i]:
-            continue
-        bearing = math.atan2(wish.target[1] - aim.y, wish.target[0] - aim.x)
-        dist = clear[-1] if config.dist == "end" else min(clear)
-        terms[i] = (
-            1.0 - min(abs(wrap_angle(bearing - pose.theta) - aim_turn), math.pi) / math.pi,
-            min(dist, enough) / enough,
-            max(0.0, 1.0 - abs(max(v1, 0.0) - cap) / v_scale),
-            1.0 - min(1.0, sum(strays) / max(len(strays), 1) / config.path_cap),
-        )
-    free = refused == 0
-    total = terms[free].sum(axis=0) if config.normalisation == "sum" else np.ones(4)
-    scaled = terms / np.where(total > 1e-9, total, np.inf)
-    score = np.where(free, (scaled * np.array(config.weights)).sum(axis=1), -np.inf)
-    return int(np.argmax(score)), refused, terms
-
-
-def drive_through(start, twist, wanted, ramp, stop, times, hold=0.0):
-    """(x, y) (n, 2) at ``times``: the speeds ramp to ``wanted``, hold, and ramp to zero."""
-    fine = np.linspace(0.0, max(times[-1], 1e-6), 20001)
-    step = fine[1] - fine[0]
-    t = fine[:-1] + 0.5 * step
-    rising = np.clip(t / ramp, 0.0, 1.0) if ramp > 0.0 else np.ones_like(t)
-    left = np.clip(1.0 - (t - ramp - hold) / max(stop, 1e-9), 0.0, 1.0)
-    v, omega = (a + (b - a) * rising for a, b in zip(twist, wanted, strict=True))
-    falling = np.where(t > ramp + hold, left, 1.0)
-    v, omega = v * falling, omega * falling
-    theta = start[2] + np.cumsum(omega) * step - 0.5 * omega * step
-    x = np.concatenate([[start[0]], start[0] + np.cumsum(v * np.cos(theta)) * step])
-    y = np.concatenate([[start[1]], start[1] + np.cumsum(v * np.sin(theta)) * step])
-    return np.column_stack([np.interp(times, fine, x), np.interp(times, fine, y)])
-
-
-def spare_gap(movers, spread, radius, where, times, moves, ahead):
-    """The least gap (m) to movers that keep on, stand or turn back, less what they may stray."""
-    least = math.inf
-    for x, y, vx, vy, r, top in movers:
-        speed = math.hypot(vx, vy)
-        top = max(top, speed) / speed if speed > 1e-3 else 0.0
-        for scale in (1.0, 0.0, -1.0):
-            at = np.outer(times + ahead, (vx, vy)) * scale * top + (x, y)
-            gaps = np.hypot(*(at - where).T) - radius - r
-            least = min(least, (gaps - spread * np.minimum(times + ahead, moves)).min())
-    return least
 
 
 def observed_free(gaps, angle_min, increment, full_circle, sensor, centres):

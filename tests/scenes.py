@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from dynastar.clearance import lower_bounds
-from dynastar.driver.cost_to_go import extend, march
-from dynastar.driver.scene import CostToGo, DistanceField, Scene
+from dynastar.dwa import CostToGo, DistanceField, Scene
+from dynastar.dwa.cost_to_go import extend, march
 from dynastar.perception import PredictionConfig
 from dynastar.perception.hidden import Hidden
 from dynastar.perception.prediction import predict

@@ -1,137 +1,62 @@
-import math
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dynastar.clearance import distance_field
-from dynastar.dwa import DwaConfig, DynamicWindow, Margins, Surroundings, Wish
-from dynastar.geometry import Pose2D, Twist
+from dynastar.dwa.window import dynamic_window, sample_window, spaced
 from dynastar.robot import ROBOTS, slew
-from naive import evaluate_window
 
-PERIOD = 0.1
-MARGINS = Margins(0.05, 0.15, 0.1)
-OPEN = Surroundings(np.full((200, 200), 9.0, np.float32), 0.0, 0.0, 0.05, np.empty((0, 6)))
-PATH = np.column_stack([5.0 + 0.1 * np.arange(60), np.full(60, 5.0)])
-WISH = Wish((7.5, 5.0), PATH, 0.1, 99.0)
 robots = st.sampled_from(sorted(ROBOTS))
 
 
-def choose(robot, twist, config=DwaConfig(), around=OPEN, wish=WISH, **options):
-    window = DynamicWindow(ROBOTS[robot], config, PERIOD)
-    return window, window.choose(Pose2D(5.0, 5.0, 0.0), twist, around, wish, MARGINS, **options)
-
-
-@given(robots, st.floats(0, 1), st.floats(-1, 1), st.booleans())
-@settings(max_examples=60, deadline=None)
-def test_samples_and_commands_stay_inside_the_window(name, v, omega, may_reverse):
+@given(robots, st.floats(-0.3, 1), st.floats(-1, 1), st.floats(0.0, 2.5), st.floats(0.05, 2.0))
+@settings(deadline=None)
+def test_the_window_is_what_can_be_reached_within_the_limits(name, v, omega, cap, span):
     limits = ROBOTS[name].limits
-    twist = Twist(v * limits.v_max, omega * limits.omega_max)
-    window, choice = choose(name, twist, may_reverse=may_reverse)
-    low = limits.v_min if may_reverse else 0.0
-    n = len(choice.samples)
-    speeds, rates = choice.samples.T
-    ends = [
-        slew(twist.v, low, limits.v_accel, limits.v_brake, window.reach),
-        slew(twist.v, limits.v_max, limits.v_accel, limits.v_brake, window.reach),
-    ]
-    assert speeds.min() >= min(low, twist.v) - 1e-9
-    assert speeds.max() <= limits.v_max + 1e-9
-    for end in ends:
-        assert np.isclose(speeds, end).any()
-    for sign in (-1, 1):
-        end = slew(
-            twist.omega,
-            sign * limits.omega_max,
-            limits.omega_accel,
-            limits.omega_brake,
-            window.reach,
+    v, omega, cap = (
+        v * -limits.v_min if v < 0 else v * limits.v_max,
+        omega * limits.omega_max,
+        min(cap, limits.v_max),
+    )
+    low_v, high_v, low_w, high_w = dynamic_window(v, omega, limits, cap, span)
+    assert limits.v_min - 1e-9 <= low_v <= high_v <= limits.v_max + 1e-9
+    assert -limits.omega_max - 1e-9 <= low_w <= high_w <= limits.omega_max + 1e-9
+    assert high_v <= max(cap, v) + 1e-9
+    assert low_v == pytest.approx(slew(v, limits.v_min, limits.v_accel, limits.v_brake, span))
+    for end in (low_w, high_w):
+        assert abs(end - omega) <= max(limits.omega_accel, limits.omega_brake) * span + 1e-9
+
+
+@given(st.floats(-5, 5), st.floats(0, 5), st.integers(2, 40))
+@settings(deadline=None)
+def test_spaced_values_rise_from_end_to_end_with_zero_among_them(low, width, count):
+    values, high = np.full(count + 3, np.nan), low + width
+    n = spaced(low, high, count, values)
+    assert n <= count + 3
+    assert values[0] == pytest.approx(low, abs=1e-9)
+    assert values[n - 1] == pytest.approx(high, abs=1e-9)
+    assert (np.diff(values[:n]) > 0.0).all()
+    if n > 1 and low < 0.0 < high:
+        assert (values[:n] == 0.0).any()
+        rising = np.abs(np.diff(values[1 : n - 1]))
+        assert (
+            np.argmin(rising) == pytest.approx(np.argmin(np.abs(values[1 : n - 2])), abs=2)
+            if len(rising) > 4
+            else True
         )
-        assert np.isclose(rates, end).any()
-    for values, low_end, high_end in (
-        (speeds, min(ends), max(ends)),
-        (rates, rates.min(), rates.max()),
-    ):
-        if low_end < 0.0 < high_end:
-            assert (values == 0.0).any()
-    for command in window._buffers.commands[:n]:
-        assert abs(command[0]) <= limits.v_max + 1e-9
-        assert abs(command[1]) <= limits.omega_max + 1e-9
-        rate = max(limits.v_accel, limits.v_brake)
-        assert abs(command[0] - twist.v) <= rate * PERIOD + 1e-9
 
 
-def test_at_rest_standing_still_is_a_sample_and_admissible():
-    _, choice = choose("paper", Twist(0.0, 0.0))
-    still = (choice.samples == 0.0).all(axis=1)
-    assert still.any()
-    assert (choice.refused[still] == 0).all()
+def test_samples_are_all_pairs():
+    samples = np.empty((7 * 9, 2))
+    n = sample_window((-0.2, 1.0, -1.0, 0.5), np.empty(7), np.empty(9), 4, 6, samples)
+    speeds, rates = np.unique(samples[:n, 0]), np.unique(samples[:n, 1])
+    assert n == len(speeds) * len(rates) == len({tuple(s) for s in samples[:n]})
+    assert (speeds[[0, -1]] == (-0.2, 1.0)).all()
+    assert (rates[[0, -1]] == (-1.0, 0.5)).all()
+    assert [0.0, 0.0] in samples[:n].tolist()
 
 
-def test_the_full_brake_is_the_last_sample():
-    window, choice = choose("paper", Twist(1.0, 0.2))
-    stop = max(1.0 / 0.2, 0.2 / 0.3)
-    assert choice.samples[-1] == pytest.approx(np.array([1.0, 0.2]) * (1 - window.reach / stop))
-
-
-def test_a_free_way_is_driven_and_its_shares_add_up():
-    _, choice = choose("paper", Twist(0.5, 0.0))
-    assert choice.command.v > 0.5
-    assert sum(choice.shares.values()) == pytest.approx(choice.score[choice.refused == 0].max())
-    assert sum(choice.refusals.values()) == (choice.refused != 0).sum()
-
-
-def test_a_target_behind_is_turned_to_in_place():
-    _, choice = choose("paper", Twist(0.0, 0.0), wish=WISH._replace(target=(2.0, 5.2)))
-    assert choice.command.v == 0.0
-    assert choice.command.omega > 0.0
-
-
-def test_samples_by_resolution_as_printed():
-    config = DwaConfig(reach=0.0, v_resolution=0.01, omega_resolution=math.radians(1.0))
-    window, choice = choose("paper", Twist(0.5, 0.0), config)
-    speeds, rates = (np.unique(column) for column in choice.samples[:-1].T)
-    assert np.diff(speeds).max() <= 0.01 + 1e-9
-    assert np.diff(rates).max() <= math.radians(1.0) + 1e-9
-    assert window.reach == PERIOD
-
-
-@pytest.mark.parametrize("normalisation", ["sum", "range", "window"])
-@pytest.mark.parametrize("of_path", [False, True])
-@pytest.mark.parametrize("dist", ["smallest", "end"])
-@pytest.mark.parametrize("seed", range(6))
-def test_the_choice_is_that_of_a_plain_evaluation(normalisation, of_path, dist, seed):
-    rng = np.random.default_rng(seed)
-    closed = rng.random((200, 200)) < (0.002, 0.0003)[seed % 2]
-    closed[85:115, 85:115] = False
-    movers = np.array([[7.0, 5.5, -0.3, 0.0, 0.3, 0.3]])[: seed < 2]  # else what stands decides
-    around = OPEN._replace(field=distance_field(closed, 0.05), movers=movers)
-    config = DwaConfig(
-        normalisation=normalisation,
-        dist=dist,
-        v_samples=7,
-        omega_samples=9,
-        clearance_of_path=of_path,
-    )
-    twist = Twist(0.4, 0.1)
-    window, choice = choose("paper", twist, config, around)
-    best, refused, terms = evaluate_window(
-        ROBOTS["paper"],
-        config,
-        window.reach,
-        choice.samples,
-        Pose2D(5.0, 5.0, 0.0),
-        twist,
-        around,
-        WISH,
-        MARGINS,
-    )
-    free = (choice.refused == 0) | (refused == 0)
-    assert ((choice.refused != 0) >= (refused != 0)).all()  # certified stops refuse more
-    np.testing.assert_allclose(
-        choice.terms[free & (choice.refused == 0)], terms[free & (choice.refused == 0)], atol=1e-6
-    )
-    if (choice.refused == refused).all():
-        assert choice.sample == pytest.approx(tuple(choice.samples[best]))
+def test_without_room_there_is_one_sample():
+    samples = np.empty((30, 2))
+    assert sample_window((0.3, 0.3, 0.1, 0.1), np.empty(5), np.empty(5), 2, 2, samples) == 1
+    assert samples[0].tolist() == [0.3, 0.1]

@@ -1,262 +1,13 @@
-"""The promise: within the declared bounds a static world is never touched by a moving robot.
-
-Every world is drawn from its own number, so a failure is run again with ``drive(number)``.
-``DYNASTAR_WORLDS`` is how many to drive.
-"""
-
-import math
-import os
+"""What is not seen is never taken as free."""
 
 import numpy as np
-import pytest
 
-from dynastar.errors import PlanningError
-from dynastar.geometry import Goal, Pose2D, Twist
+from driving import LIMITS
+from dynastar.geometry import Pose2D, Twist
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.navigator import Navigator, RobotState
-from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot, slew
-from dynastar.simulation import Noise, Scenario, run
-from dynastar.simulation.contact import Solids
+from dynastar.robot import Footprint, Lidar, Robot
 from dynastar.simulation.lidar import LidarSimulator
-
-DEFAULT = 200
-WORLDS = int(os.environ.get("DYNASTAR_WORLDS", DEFAULT))
-CHUNK = 20
-EMPTY = OccupancyGrid(np.zeros((1, 1), np.int8), GridFrame(40.0, -20.0, -20.0))
-LIMITS = Limits(1.0, 1.5, 0.8, 2.0, 0.8, 2.0)
-OUTCOMES = {"arrived", "blocked", "timeout", "sensor_lost", "contact"}
-CHUNKS = [
-    pytest.param(k, marks=[pytest.mark.slow] if k * CHUNK >= DEFAULT else [])
-    for k in range(math.ceil(WORLDS / CHUNK))
-]
-
-
-class Watched:
-    """A Navigator whose every command is held against what the drive can do."""
-
-    def __init__(self, grid, robot, config):
-        self.inner, self.limits, self.config = Navigator(grid, robot, config), robot.limits, config
-        self._sent = []
-
-    @property
-    def status(self):
-        return self.inner.status
-
-    def set_goal(self, goal):
-        self.inner.set_goal(goal)
-
-    def command(self, state, scan):
-        command = self.inner.command(state, scan)
-        limits, period = self.limits, self.config.period
-        assert limits.v_min - 1e-6 <= command.v <= limits.v_max + 1e-6, command
-        assert abs(command.omega) <= limits.omega_max + 1e-6, command
-        now = self._as_it_acts(state)
-        v = slew(now.v, command.v, limits.v_accel, limits.v_brake, period)
-        omega = slew(now.omega, command.omega, limits.omega_accel, limits.omega_brake, period)
-        assert abs(v - command.v) < 1e-6, (state.stamp, now, command)
-        assert abs(omega - command.omega) < 1e-6, (state.stamp, now, command)
-        self._sent.append((state.stamp, command))
-        return command
-
-    def _as_it_acts(self, state):
-        """The speeds when a command given now acts: those on their way are carried out first."""
-        limits, latency = self.limits, self.config.latency
-        v, omega = state.twist
-        ends = [stamp + latency for stamp, _ in self._sent[1:]] + [state.stamp + latency]
-        for (stamp, wanted), end in zip(self._sent, ends, strict=bool(self._sent)):
-            span = end - max(stamp + latency, state.stamp)
-            if span > 1e-9:
-                v = slew(v, wanted.v, limits.v_accel, limits.v_brake, span)
-                omega = slew(omega, wanted.omega, limits.omega_accel, limits.omega_brake, span)
-        return Twist(v, omega)
-
-
-def random_world(number):
-    """A mission in a small static world that keeps within what the promise is made for."""
-    random = np.random.default_rng(number)
-    robot = random_robot(random)
-    noise = Noise(
-        *(float(random.choice([0.0, random.uniform(0.0, b)])) for b in (0.05, 0.04, 0.04))
-    )
-    narrowest = float(random.uniform(0.08, 0.25))
-    settings = random_settings(random, robot, narrowest)
-    cell = float(random.choice([0.05, 0.1, 0.25, 0.5, 1.0]))
-    rows, columns = (round(side / cell) for side in random.uniform(6.0, 12.0, 2))
-    grid = random_grid(random, rows, columns, cell, narrowest)
-    start, goal, obstacles = random_mission(random, grid, robot, noise, settings)
-    return Scenario(
-        f"world {number}",
-        grid,
-        robot,
-        start,
-        (Goal(*goal, float(random.uniform(-3.0, 3.0)) if random.random() < 0.2 else None),),
-        obstacles=obstacles,
-        noise=noise,
-        latency=float(random.choice([0.0, random.uniform(0.0, 0.3)])),
-        time_limit=float(random.uniform(8.0, 15.0)),
-        unknown=str(random.choice(["blocked", "free"])),
-        seed=number,
-        preset=str(random.choice(["default", "paper"])),
-        navigator=settings,
-    )
-
-
-def random_robot(random):
-    if random.random() < 0.4:
-        return ROBOTS[str(random.choice(list(ROBOTS)))]
-    limits = Limits(
-        v_max=float(random.uniform(0.2, 2.0)),
-        omega_max=float(random.uniform(0.3, 3.0)),
-        v_accel=float(random.uniform(0.2, 3.0)),
-        omega_accel=float(random.uniform(0.3, 5.0)),
-        v_brake=float(random.uniform(0.2, 3.0)),
-        omega_brake=float(random.uniform(0.3, 5.0)),
-        v_min=float(random.choice([0.0, -0.2])),
-    )
-    if random.random() < 0.5:
-        footprint = Footprint.disc(float(random.uniform(0.08, 0.4)))
-    else:
-        corners = int(random.integers(3, 8))
-        angles = (np.arange(corners) + random.uniform(-0.2, 0.2, corners)) * math.tau / corners
-        ring = np.column_stack([np.cos(angles), np.sin(angles)]) * random.uniform(0.15, 0.4, 2)
-        footprint = Footprint.polygon((ring + random.uniform(-0.02, 0.02, 2)).tolist())
-    fov = float(random.choice([math.tau, random.uniform(math.pi / 2, math.tau)]))
-    lidar = Lidar(
-        beams=int(random.integers(90, 721)),
-        fov=fov,
-        range_min=float(random.choice([0.0, random.uniform(0.0, 0.4)])),
-        range_max=float(random.uniform(3.0, 6.0)),
-        x=float(random.uniform(-0.8, 0.8) * footprint.inscribed),
-        y=float(random.uniform(-0.5, 0.5) * footprint.inscribed),
-        theta=float(random.choice([0.0, random.uniform(-0.5, 0.5)])),
-    )
-    return Robot("random", limits, footprint, lidar)
-
-
-def random_settings(random, robot, narrowest):
-    dwa = {
-        "horizon": random.uniform(0.5, 4.0),
-        "steps": int(random.integers(5, 16)),
-        "reach": random.choice([0.0, random.uniform(0.0, 2.0)]),
-        "v_samples": int(random.integers(2, 9)),
-        "omega_samples": int(random.integers(2, 13)),
-        "v_resolution": random.choice([0.0, robot.limits.v_max / 8.0]),
-        "omega_resolution": random.choice([0.0, robot.limits.omega_max / 8.0]),
-        "normalisation": str(random.choice(["window", "range", "sum"])),
-        "dist": str(random.choice(["smallest", "end"])),
-        "clearance_cap": random.uniform(0.05, 2.0),
-        "clearance_of_path": bool(random.random() < 0.5),
-        "path_cap": random.uniform(0.1, 2.0),
-        "turn_in_place": random.uniform(0.3, 3.15),
-    }
-    if random.random() < 0.7:
-        names = ("heading", "dist", "vel", "simi")
-        weights = random.uniform((0.1, 0.0, 0.1, 0.0), (0.5, 0.3, 0.5, 1.0)).tolist()
-        dwa["weights"] = dict(zip(names, weights, strict=True))
-    always = "steps", "v_samples", "omega_samples", "v_resolution", "omega_resolution"
-    dwa = {key: value for key, value in dwa.items() if key in always or random.random() < 0.3}
-    return {
-        "period": random.uniform(0.05, 0.2),
-        "lookahead": random.uniform(0.5, 3.0),
-        "planning_resolution": random.uniform(0.05, 0.3),
-        "comfort": random.uniform(0.0, 0.3),
-        "deviation": random.uniform(0.3, 2.0),
-        "stuck_time": random.uniform(0.5, 4.0),
-        "mover_speed": random.choice([0.0, random.uniform(0.0, 1.0)]),
-        "layer": {
-            "resolution": random.uniform(0.04, 0.12),
-            "size": random.uniform(6.0, 9.0),
-            "memory": random.uniform(1.0, 30.0),
-            "narrowest": narrowest,
-        },
-        "dwa": dwa,
-    }
-
-
-def random_grid(random, rows, columns, cell, narrowest):
-    """Walls no thinner than ``narrowest``, and here and there an unknown patch."""
-    values = np.zeros((rows, columns), np.int8)
-    thinnest = math.ceil(narrowest / cell)
-    for state, count in ((100, random.integers(0, 7)), (-1, random.integers(0, 3))):
-        for _ in range(count):
-            height, width = random.integers(thinnest, thinnest + max(2, int(1.5 / cell)), 2)
-            row, column = random.integers(0, rows), random.integers(0, columns)
-            values[row : row + height, column : column + width] = state
-    edge = values == 100
-    for rim in (edge[:thinnest], edge[-thinnest:], edge[:, :thinnest].T, edge[:, -thinnest:].T):
-        rim[:, rim.any(axis=0)] = True  # what the border cuts thin is not thin: the border is solid
-    values[edge] = 100
-    corner = random.uniform(-5.0, 5.0, 2)
-    yaw = random.choice([0.0, random.uniform(-3.0, 3.0)])
-    return OccupancyGrid(values, GridFrame(cell, *map(float, corner), float(yaw)))
-
-
-def random_mission(random, grid, robot, noise, settings):
-    """A start and a goal with room on the map, and obstacles beyond what a start takes as free."""
-    radius, layer = robot.footprint.circumscribed, settings["layer"]
-    known = Solids(grid)
-
-    def somewhere(room):
-        for _ in range(200):
-            cell = random.uniform(0.0, 1.0, 2) * grid.values.shape
-            x, y = grid.frame.to_world(*cell)
-            at = Pose2D(float(x), float(y), float(random.uniform(-math.pi, math.pi)))
-            if known.gap(at, Footprint.disc(room)) > 0.0:
-                return at
-        return None
-
-    start = somewhere(radius + random.uniform(0.03, 0.2))
-    goal = max((somewhere(radius + 0.15) for _ in range(2)), key=lambda at: _gap(start, at))
-    bare = radius + robot.lidar.range_min + 2.0 * layer["resolution"] + 2.0 * noise.pose_bound
-    obstacles = []
-    for _ in range(random.integers(0, 9)):
-        at = np.array(somewhere(0.0)[:2])
-        if random.random() < 0.5:  # near the way
-            at = np.array(start[:2]) + random.uniform(0.1, 1.0) * np.subtract(goal[:2], start[:2])
-            at += random.normal(0.0, 0.5, 2)
-        ring = random_ring(random, layer["narrowest"]) + at
-        nearest = Solids(EMPTY, [ring - start[:2]]).gap(Pose2D(0.0, 0.0), Footprint.disc(bare))
-        if nearest > 0.0:
-            obstacles.append(ring)
-    heading = start.theta if random.random() < 0.5 else None
-    return (start.x, start.y, heading), (goal.x, goal.y), tuple(obstacles)
-
-
-def _gap(a, b):
-    return -1.0 if a is None or b is None else math.dist(a[:2], b[:2])
-
-
-def random_ring(random, narrowest):
-    """A disc or a box round the origin, nowhere narrower than ``narrowest``."""
-    if random.random() < 0.5:
-        radius = random.uniform(0.5 * narrowest, 0.5) / math.cos(math.pi / 24)
-        angles = np.arange(24) * math.tau / 24
-        return radius * np.column_stack([np.cos(angles), np.sin(angles)])
-    x, y = 0.5 * random.uniform(narrowest, 1.0, 2)
-    turn = random.uniform(0.0, math.pi)
-    cos, sin = math.cos(turn), math.sin(turn)
-    return np.array([(x, y), (-x, y), (-x, -y), (x, -y)]) @ np.array([[cos, sin], [-sin, cos]])
-
-
-def drive(number):
-    return run(random_world(number), navigator=Watched)
-
-
-@pytest.mark.parametrize("chunk", CHUNKS)
-def test_a_static_world_is_never_touched(chunk):
-    broken = {}
-    for number in range(chunk * CHUNK, min((chunk + 1) * CHUNK, WORLDS)):
-        try:
-            episode = drive(number)
-        except AssertionError as wrong:  # a command outside the limits
-            broken[number] = str(wrong)
-            continue
-        except PlanningError:
-            continue  # a start or goal that the map does not allow is said before anything moves
-        assert episode.outcome in OUTCOMES
-        if episode.contact == "moving":
-            broken[number] = episode.reason
-    assert not broken
 
 
 def blind_behind(pose):
@@ -268,7 +19,7 @@ def blind_behind(pose):
     def tick(now, x):
         at = Pose2D(x, *pose[1:])
         navigator.command(RobotState(now, at, Twist(0.5, 0.0)), lidar.scan(at, now))
-        return navigator.senses.layer
+        return navigator.sensing.local_map
 
     return navigator, tick
 
@@ -276,17 +27,17 @@ def blind_behind(pose):
 def test_forgetting_frees_nothing():
     navigator, tick = blind_behind((2.0, 4.0, 0.0))
     for k in range(21):
-        layer = tick(0.1 * k, 2.0 + 0.05 * k)
-    before, origin = layer.open.copy(), layer.origin
-    navigator.senses.forget()
-    layer = tick(2.1, 3.0)
-    assert layer.origin == origin
-    assert not (layer.open & ~before & 1).any()
+        local_map = tick(0.1 * k, 2.0 + 0.05 * k)
+    before, origin = local_map.open.copy(), local_map.origin
+    navigator.sensing.forget()
+    local_map = tick(2.1, 3.0)
+    assert local_map.origin == origin
+    assert not (local_map.open & ~before & 1).any()
 
 
 def test_a_start_at_the_edge_of_the_map_takes_nothing_beyond_it_as_free():
     _, tick = blind_behind((0.25, 4.0, 0.0))
-    layer = tick(0.0, 0.25)
-    x = layer.origin[0] + (np.arange(len(layer.open)) + 0.5) * layer.config.resolution
-    assert layer.open[:, x > 0.0].any()
-    assert not layer.open[:, x < 0.0].any()
+    local_map = tick(0.0, 0.25)
+    x = local_map.origin[0] + (np.arange(len(local_map.open)) + 0.5) * local_map.config.resolution
+    assert local_map.open[:, x > 0.0].any()
+    assert not local_map.open[:, x < 0.0].any()

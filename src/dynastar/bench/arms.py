@@ -33,8 +33,12 @@ def _terms(planner: str, heuristic: HeuristicConfig) -> Arm:
     return Arm(navigator={"planner": {"planner": planner, "heuristic": heuristic._asdict()}})
 
 
+def _navigator(**settings: Any) -> Arm:
+    return Arm(navigator=settings)
+
+
 def _window(**settings: Any) -> Arm:
-    return Arm(navigator={"dwa": settings})
+    return _navigator(dwa=settings)
 
 
 def _weights(**weights: float) -> Arm:
@@ -48,26 +52,23 @@ ARMS: dict[str, Arm] = {
     "Eq. 9: alpha = 0": _weights(heading=0.0),
     "Eq. 9: beta = 0": _weights(dist=0.0),
     "Eq. 9: gamma = 0": _weights(vel=0.0),
-    "Eq. 9: sigma = 0": _weights(simi=0.0),
     "Eq. 9: weights as printed": _weights(heading=0.5, dist=0.2, vel=0.2, simi=0.1),
-    "normalised over ranges": _window(normalisation="range"),
-    "normalised over sums": _window(normalisation="sum"),
-    "dist at the end": _window(dist="end"),
-    "target by distance alone": Arm(navigator={"target": "distance"}),
-    "no turning in place": _window(turn_in_place=3.15),
-    "horizon 1.5 s": _window(horizon=1.5),
+    "no risk": _weights(risk=0.0),
+    "no hysteresis": _window(hysteresis=0.0),
+    "window of one period": _window(reach=0.0),
+    "4 x 7 samples": _window(v_samples=4, omega_samples=7),
+    "16 x 28 samples": _window(v_samples=16, omega_samples=28),
+    "horizon 2 s": _window(horizon=2.0),
     "horizon 6 s": _window(horizon=6.0),
-    "period 0.05 s": Arm(navigator={"period": 0.05}),
-    "period 0.2 s": Arm(navigator={"period": 0.2}),
-    "no replanning": Arm(navigator={"global_path": "once"}),
-    # Eq. 8: the goal itself is the target, and there is no path to be like or as clear as.
-    "DWA alone": Arm(
-        navigator={
-            "global_path": "straight",
-            "target": "distance",
-            "lookahead": 50.0,
-            "dwa": {"weights": {"simi": 0.0}, "clearance_of_path": False},
-        }
-    ),
+    "comfort 0.1 m": _window(comfort=0.1),
+    "comfort 0.5 m": _window(comfort=0.5),
+    "plans without comfort": _navigator(comfort=0.0),
+    "prediction sure of itself": _navigator(prediction={"spread": 0.0}),
+    "nobody accelerates": _navigator(prediction={"acceleration": 0.0}),
+    "nobody hidden": _navigator(hidden_speed=0.0),
+    "no reverse": _navigator(reverse=False),
+    "period 0.05 s": _navigator(period=0.05),
+    "period 0.2 s": _navigator(period=0.2),
+    "no replanning": _navigator(global_path="once"),
     "path following alone": Arm(follows=True),
 }

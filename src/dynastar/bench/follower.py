@@ -4,24 +4,25 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
+from dynastar.bench.speed_profile import SpeedProfile, bend_speed, points
 from dynastar.errors import PlanningError
 from dynastar.geometry import Goal, Twist, wrap_angle
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import Navigator, NavigatorConfig, RobotState, Status
-from dynastar.navigator.profile import SpeedProfile, bend_speed, points
 from dynastar.path import Path
 from dynastar.robot import Robot, slew
 
 NEAREST = 0.3  # m along the path to the point that is pursued, at least
 AHEAD = 0.6  # s, and at a speed that much further; twice that cuts corners into what stands there
+TURN_IN_PLACE = 1.2  # rad, a point further aside is turned to before driving
 CALM = 0.1  # share of the turning acceleration that bends are slowed down for
 
 
 class Follower:
     """Pure pursuit [Coulter1992] of one plan for each goal; scans are not looked at.
 
-    It plans on the navigator's chart, slows down for bends and goals by the navigator's profile, and
-    turns in place where the navigator does. A goal's heading is not turned to.
+    It plans on the navigator's planning map, slows down for bends and goals, and turns in place
+    where the path leads far aside. A goal's heading is not turned to.
     """
 
     def __init__(self, grid: OccupancyGrid, robot: Robot, config: NavigatorConfig) -> None:
@@ -30,8 +31,8 @@ class Follower:
         self._calm = limits._replace(
             omega_accel=CALM * limits.omega_accel, omega_brake=CALM * limits.omega_brake
         )
-        self.chart = Navigator(grid, robot, config).chart
-        self.status = Status(planning_frame=self.chart.frame)
+        self.planning_map = Navigator(grid, robot, config).planning_map
+        self.status = Status(planning_frame=self.planning_map.frame)
         self._goals: list[Goal] = []
         self._path: Path | None = None
         self._s = 0.0
@@ -58,14 +59,14 @@ class Follower:
     def _plan(self, state: RobotState) -> bool:
         goal = self._goals[0]
         try:
-            plan = self.chart.plan(state.pose[:2], (goal.x, goal.y), explored=False)
+            plan = self.planning_map.plan(state.pose[:2], (goal.x, goal.y), explored=False)
         except PlanningError as error:
             self._goals = []
             self._say("blocked", str(error))
             self.status = replace(self.status, error=error)
             return False
         self._path, self._s = plan.path, 0.0
-        limits = self.chart.speed_limit(points(plan.path))
+        limits = self.planning_map.speed_limit(points(plan.path))
         self._profile = SpeedProfile(plan.path, self._calm, limits)
         self.status = replace(
             self.status, plan=plan, plan_id=self.status.plan_id + 1, plan_reason="a plan is needed"
@@ -79,7 +80,7 @@ class Follower:
         self._s = self._path.project(*pose[:2], low=self._s, high=self._s + 2.0)
         x, y = self._path.at(self._s + NEAREST + AHEAD * max(v, 0.0))
         off = wrap_angle(math.atan2(y - pose.y, x - pose.x) - pose.theta)
-        if abs(off) > self.config.dwa.turn_in_place:
+        if abs(off) > TURN_IN_PLACE:
             fastest = math.sqrt(limits.omega_brake * abs(off))
             return self._ramped(state, 0.0, math.copysign(min(limits.omega_max, fastest), off))
         curvature = 2.0 * math.sin(off) / max(math.dist(pose[:2], (x, y)), 1e-3)

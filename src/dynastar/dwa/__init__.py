@@ -1,17 +1,10 @@
-"""The dynamic window approach: window (5-7), rollouts, the certified stop, evaluation (8-9)."""
+"""The dynamic window approach: motion, window, admissibility, objective and search."""
 
 from dynastar.dwa.config import DwaConfig, Weights
-from dynastar.dwa.dwa import Choice, DynamicWindow, Margins, Surroundings, Wish
-from dynastar.dwa.passing import Passing, Start
+from dynastar.dwa.dwa import Body, Choice, DynamicWindow, body_of
+from dynastar.dwa.scene import CostToGo, DistanceField, Scene
 
 __all__ = [
-    "Choice",
-    "DwaConfig",
-    "DynamicWindow",
-    "Margins",
-    "Passing",
-    "Start",
-    "Surroundings",
-    "Weights",
-    "Wish",
-]
+    "Body", "Choice", "CostToGo", "DistanceField", "DwaConfig", "DynamicWindow", "Scene", "Weights",
+    "body_of",
+]  # fmt: skip

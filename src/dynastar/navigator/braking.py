@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from dynastar.dwa.stop_kernels import coast
+from dynastar.dwa.motion import coast
 from dynastar.geometry import Pose2D, Twist
 from dynastar.navigator.status import RobotState
 from dynastar.robot import Limits, slew, stopping_time

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from typing import Annotated, Any, Literal, NamedTuple
 
 from dynastar.config import Field, checked, choose
-from dynastar.dwa import DwaConfig, Weights
-from dynastar.obstacles import LayerConfig, TrackerConfig
+from dynastar.dwa.config import DwaConfig, Weights
+from dynastar.perception import LocalMapConfig, PredictionConfig, TrackerConfig
 from dynastar.planning import HeuristicConfig, PlannerConfig
 
 
@@ -17,60 +17,34 @@ class NavigatorConfig(NamedTuple):
     range_error: Annotated[float, Field("bound of a range's error", "m", 0.0, 1.0)] = 0.01
     pose_error: Annotated[float, Field("bound of the position's error", "m", 0.0, 1.0)] = 0.01
     heading_error: Annotated[float, Field("bound of the heading's error", "rad", 0.0, 0.5)] = 0.0
-    mover_error: Annotated[float, Field("a mover's velocity may be off by", "m/s", 0.0, 2.0)] = 0.1
-    mover_margin: Annotated[float, Field("gap kept from a mover", "m", 0.0, 2.0)] = 0.15
-    linger: Annotated[
-        float, Field("no mover should arrive where it rests for so long", "s", 0.0, 60.0)
-    ] = 8.0
-    mover_speed: Annotated[
-        float, Field("so fast a mover may come into view head-on", "m/s", 0.0, 20.0)
-    ] = 0.8
     hidden_speed: Annotated[
-        float, Field("so fast somebody may step out of hiding, 0 if nobody does", "m/s", 0.0, 20.0)
+        float, Field("somebody may come out of unseen space so fast, 0 if nobody", "m/s", 0.0, 20.0)
     ] = 0.5
     reverse: Annotated[bool, Field("drive back where the robot can, if need be")] = True
     scan_age: Annotated[float, Field("older data are no data", "s", 0.05, 5.0)] = 0.3
     unknown: Annotated[Literal["free", "blocked"], Field("plan through unknown space?")] = "blocked"
     goal_tolerance: Annotated[float, Field("so near is there", "m", 0.01, 5.0)] = 0.25
     heading_tolerance: Annotated[float, Field("so well aligned is aligned", "rad", 0.01, 3.2)] = 0.1
-    lookahead: Annotated[float, Field("the target lies so far along the path", "m", 0.2, 50.0)] = (
-        1.5
-    )
-    target: Annotated[
-        Literal["visible", "distance"],
-        Field("the farthest point up to there that can be seen, or that point, seen or not"),
-    ] = "visible"
     global_path: Annotated[
-        Literal["replanned", "once", "straight"],
-        Field("planned whenever need be, or for each goal once; or the straight line to the goal"),
+        Literal["replanned", "once"], Field("planned whenever need be, or for each goal once")
     ] = "replanned"
-    planning_resolution: Annotated[float, Field("plan on cells no larger", "m", 0.01, 10.0)] = 0.1
+    planning_resolution: Annotated[float, Field("plan on cells no larger", "m", 0.01, 10.0)] = 0.05
     comfort: Annotated[float, Field("clearance a plan has to spare if it can", "m", 0.0, 5.0)] = 0.1
-    deviation: Annotated[float, Field("replan when so far off the path", "m", 0.1, 50.0)] = 0.5
     stuck_time: Annotated[float, Field("no progress for so long is stuck", "s", 0.5, 120.0)] = 6.0
-    patience: Annotated[float, Field("wait for a mover so long", "s", 0.0, 600.0)] = 15.0
     attempts: Annotated[int, Field("rounds of recovery before giving up", "", 1, 100)] = 4
     planner: PlannerConfig = PlannerConfig(heuristic=HeuristicConfig(parent=False, q="ratio"))
     dwa: DwaConfig = DwaConfig()
-    layer: LayerConfig = LayerConfig()
+    local_map: LocalMapConfig = LocalMapConfig()
     tracker: TrackerConfig = TrackerConfig()
+    prediction: PredictionConfig = PredictionConfig()
 
 
 PRESETS: dict[str, NavigatorConfig] = {
     "default": NavigatorConfig(),
-    # Eq. 2 with all its terms, the printed weights and resolutions, one period's window (Eq. 6);
-    # Table II has no speed below 0.
     "paper": NavigatorConfig(
         reverse=False,
         planner=PlannerConfig(),
-        dwa=DwaConfig(
-            weights=Weights(0.5, 0.2, 0.2, 0.1),
-            reach=0.0,
-            v_resolution=0.01,
-            omega_resolution=0.017453292519943295,
-            normalisation="sum",
-            clearance_of_path=False,
-        ),
+        dwa=DwaConfig(weights=Weights(0.5, 0.2, 0.2, 0.1)),
     ),
 }
 

@@ -1,56 +1,38 @@
-"""Is the robot getting anywhere?"""
+"""Whether the robot gets on: the cost-to-go has to fall."""
 
 import math
 
-DWELLING = 1.0  # m from where it was first that a robot stays
+STEP = 0.1  # m by which the cost-to-go has to fall to count
+LEAP = 1.0  # m by which it has to fall for the rounds of recovery to start over
 
 
 class Progress:
-    """Notes when the robot last came nearer to its goal, along the path or by turning to the target."""
+    """Remembers the smallest cost-to-go, when it was reached, and the rounds of recovery since."""
 
-    def __init__(self) -> None:
-        self.since = self._seen = -math.inf
-        self._left = self._off = math.inf
-        self._anchor, self._anchored = (math.inf, math.inf), -math.inf
+    def __init__(self, patience: float) -> None:
+        self.patience = patience  # s
+        self.reset()
+
+    def reset(self) -> None:
+        """A new goal: nothing has been reached yet."""
+        self.rounds = 0
+        self._least = self._best = math.inf
+        self._since: float | None = None
 
     def restart(self, now: float) -> None:
-        """Counts from ``now``, whatever was reached before."""
-        self.since = now
-        self._left = self._off = math.inf
-        self._seen = now
+        """A new path: what it costs is compared with itself only."""
+        self._best, self._since = math.inf, now
 
-    def rebase(self) -> None:
-        """Another path: what is left is measured along that, the clock goes on."""
-        self._left = self._off = math.inf
-
-    def note_sight(self, now: float, seen: bool) -> None:
-        """Takes in whether the path can be seen."""
-        if seen:
-            self._seen = now
-
-    def unseen(self, now: float, patience: float) -> bool:
-        """Whether the path was out of sight for longer than ``patience`` seconds."""
-        return now - self._seen > patience
-
-    def note(self, now: float, left: float, off: float) -> bool:
-        """Takes in metres ``left`` and radians ``off`` the target; whether either got better."""
-        if self._left == math.inf:
-            self._left, self._off = left, abs(off)
-        if left < self._left - 0.1:
-            self._left, self._off = left, abs(off)
-            self.since = now
-            return True
-        if abs(off) < self._off - 0.2:
-            self._off = abs(off)
-            self.since = now
-        return False
-
-    def dwells(self, now: float, position: tuple[float, float], patience: float) -> bool:
-        """Whether the robot stays within a metre for longer than ``patience`` seconds."""
-        if math.dist(position, self._anchor) > DWELLING:
-            self._anchor, self._anchored = position, now
-        return now - self._anchored > patience
-
-    def stuck(self, now: float, patience: float) -> bool:
-        """Whether nothing got better for longer than ``patience`` seconds."""
-        return now - self.since > patience
+    def stuck(self, now: float, value: float) -> bool:
+        """Takes in the cost-to-go (m) at ``now`` (s); whether it has not fallen for too long."""
+        if value < self._best - STEP:
+            self._best, self._since = value, now
+        if value < self._least - LEAP:
+            self._least, self.rounds = value, 0
+        if self._since is None:
+            self._since = now
+        if now - self._since <= self.patience:
+            return False
+        self.rounds += 1
+        self.restart(now)
+        return True

@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from dynastar.dwa import Choice
+from dynastar.dwa.dwa import Choice
 from dynastar.errors import PlanningError
 from dynastar.geometry import Pose2D, Twist
 from dynastar.grid import GridFrame
-from dynastar.obstacles import MovingObstacle
+from dynastar.perception import Track
 from dynastar.planning import Plan
 
 STATES = (
@@ -29,7 +29,8 @@ class Status:
     """What the navigator is doing and why, and what its last tick considered.
 
     ``state`` is one of ``STATES``. ``plan_id`` rises with every new plan; the plan's cells belong to
-    ``planning_frame``. ``error`` is why no plan could be made, if that is what stopped it.
+    ``planning_frame``. ``limited_by`` says what kept the last command from being faster, ``error``
+    why no plan could be made, if that is what stopped it.
     """
 
     state: str = "idle"
@@ -40,8 +41,8 @@ class Status:
     plan_id: int = 0
     plan_reason: str = ""
     planning_frame: GridFrame = GridFrame(1.0)
-    target: tuple[float, float] | None = None
-    tracks: tuple[MovingObstacle, ...] = ()
+    tracks: tuple[Track, ...] = ()
+    limited_by: str = ""
     goals_left: int = 0
     error: PlanningError | None = None
     choice: Choice | None = None

@@ -5,11 +5,8 @@ from functools import cache
 
 import numpy as np
 
-from dynastar.dwa import Margins, Passing, Start, Surroundings
-from dynastar.geometry import Goal, Pose2D, Twist
+from dynastar.geometry import Goal
 from dynastar.grid import OccupancyGrid
-from dynastar.obstacles import ObstacleLayer
-from dynastar.path import Path
 from dynastar.robot import ROBOTS
 from dynastar.simulation.scenario import Mover, Scenario
 
@@ -44,18 +41,3 @@ def warm_up() -> None:
     )
     drive(scenario)
     drive(replace(scenario, robot=ROBOTS["jackal"]))
-    _pass(scenario)
-
-
-def _pass(scenario: Scenario) -> None:
-    """The ways past a walker, which few missions need."""
-    pose, twist = Pose2D(1.0, 1.0, 0.0), Twist(0.0, 0.0)
-    path = Path(np.array([(1.0, 1.0), (3.0, 1.0)])).resampled(0.0, 2.0, 0.1)
-    path = np.column_stack([path, np.ones(len(path))])
-    walker = np.array([[2.0, 2.0, -0.5, -0.5, 0.3, 0.7]])
-    passing, margins = Passing(scenario.robot, 0.1), Margins(0.1, 0.1, 0.1)
-    layer = ObstacleLayer()
-    around = Surroundings(layer.field, *layer.origin, layer.config.resolution, walker)
-    start = Start(pose, twist, around, path, margins)
-    passing.evade(start)
-    passing.go_on(start)

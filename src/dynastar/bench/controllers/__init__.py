@@ -25,7 +25,6 @@ from dynastar.errors import ConfigError
 
 BUILT_IN = {
     "navigator": "",
-    "cost_to_go": "dynastar.driver:CostToGoNavigator",
     "pure_pursuit": "dynastar.bench.controllers.pure_pursuit:PurePursuit",
     "kompass_dwa": "dynastar.bench.controllers.kompass:KompassDwa",
 }

@@ -56,40 +56,42 @@ TALL = (0.88, 1.0, 1.0)  # inches, the rows' boxes
 BLOCKS = {
     "map": Block(0.58, A, 1.0, TALL[0], PLAN_FACE, "Map, goals",
                  "as loaded,\nas asked", "grid, io"),
-    "chart": Block(1.97, A, 1.24, TALL[0], PLAN_FACE, "Chart",
-                   "map and what was seen,\ninflated by the footprint", "navigator.chart\nclearance"),
+    "planning map": Block(1.97, A, 1.24, TALL[0], PLAN_FACE, "Planning map",
+                          "map and what was seen,\ninflated by the footprint",
+                          "navigator.planning_map\nclearance"),
     "search": Block(3.47, A, 1.2, TALL[0], PLAN_FACE, "Improved A*",
                     "Eqs. 2 and 3:\na grid path", "planning.search\nplanning.heuristic"),
     "smooth": Block(4.86, A, 1.06, TALL[0], PLAN_FACE, "Smoothing",
                     "pulled taut,\ncorners rounded", "planning.smoothing"),
     "path": Block(6.22, A, 1.14, TALL[0], PLAN_FACE, "Global path",
-                  "and the speed that\nits bends allow", "path\nnavigator.profile"),
+                  "what is left of it\nfrom the robot on", "path"),
     "sensors": Block(0.58, B, 1.0, TALL[1], SENSE_FACE, "State, scans",
-                     "each scan placed\nby its own stamp", "scan\nnavigator.senses"),
+                     "each scan placed\nby its own stamp", "scan\nnavigator.sensing"),
     "senses": Block(1.97, B, 1.24, TALL[1], SENSE_FACE, "Surroundings",
-                    "obstacle layer: free,\nseen, unseen; tracker:\nwhat moves",
-                    "obstacles.layer\nobstacles.tracker"),
+                    "local map: free, seen,\nunseen; what moves\nand where to",
+                    "perception.local_map\nperception.prediction"),
     "recovery": Block(3.47, B, 1.2, TALL[1], PLAN_FACE, "Recovery",
-                      "turn, back off, forget,\nreplan; in the end\nsay \"blocked\"", "navigator.recovery"),
+                      "forget what was\nsensed, replan; in the\nend say \"blocked\"",
+                      "navigator.navigator"),
     "watch": Block(4.86, B, 1.06, TALL[1], PLAN_FACE, "Watch",
-                   "path blocked, left,\nout of sight? stuck?\nat the goal?",
+                   "path blocked? no\nprogress? a shorter\npath? at the goal?",
                    "navigator.navigator\nnavigator.progress"),
-    "target": Block(6.22, B, 1.14, TALL[1], DRIVE_FACE, "Local target",
-                    "farthest point of the\npath in sight, within\nthe lookahead",
-                    "navigator.target\nnavigator.lookout"),
+    "target": Block(6.22, B, 1.14, TALL[1], DRIVE_FACE, "Cost-to-go",
+                    "over the local map,\nfrom where the path\nleaves it",
+                    "navigator.guidance\ndwa.cost_to_go"),
     "robot": Block(0.58, C, 1.0, TALL[2], SENSE_FACE, "Robot",
                    "or a simulated\nworld", "robot\nsimulation"),
     "command": Block(1.97, C, 1.24, TALL[2], DRIVE_FACE, "Twist (v, ω)",
-                     "the best; or one past\nmovers; or the stop\nthat was certified",
-                     "dwa.passing\nnavigator.braking"),
+                     "the best; or the stop\nthat was certified",
+                     "navigator.braking"),
     "dwa": Block(4.83, C, 3.92, TALL[2], DRIVE_FACE, "Dynamic window", "", ""),
 }
 # fmt: on
 STAGES = (
-    ("window", "Eqs. 5 and 6:\nspeeds in reach", "dwa.window_kernels"),
-    ("rollouts", "Eqs. 4 and 7:\narcs to contact", "dwa.rollout_kernels"),
-    ("certified stop", "of the footprint,\nalong one arc", "dwa.stop_kernels"),
-    ("evaluation", "Eq. 9: heading,\ndist, vel, simi", "dwa.rollout_kernels"),
+    ("window", "Eqs. 5 and 6:\nspeeds in reach", "dwa.window"),
+    ("certified stop", "Eq. 7: the footprint\ncan always brake", "dwa.admissible"),
+    ("rollouts", "Eq. 4: an arc, then\ndown the cost-to-go", "dwa.motion\ndwa.search"),
+    ("evaluation", "Eq. 9: heading,\ndist, vel, and risk", "dwa.objective"),
 )
 
 
@@ -111,13 +113,13 @@ def draw_system(width: float = PAGE) -> Figure:
 def _show_flow(axes: Axes) -> None:
     """What goes where, tick by tick."""
     b = BLOCKS
-    for left, right in pairwise(("map", "chart", "search", "smooth", "path")):
+    for left, right in pairwise(("map", "planning map", "search", "smooth", "path")):
         _arrow(axes, ((b[left].right, A), (b[right].left, A)))
     for upper, lower in (("path", "target"), ("target", "dwa")):
         _arrow(axes, ((b[upper].x, b[upper].low), (b[upper].x, b[lower].top)))
     for right, left in (("dwa", "command"), ("command", "robot")):
         _arrow(axes, ((b[right].left, C), (b[left].right, C)))
-    for lower, upper in (("robot", "sensors"), ("senses", "chart")):
+    for lower, upper in (("robot", "sensors"), ("senses", "planning map")):
         _arrow(axes, ((b[lower].x, b[lower].top), (b[lower].x, b[upper].low)))
     _arrow(axes, ((b["sensors"].right, B), (b["senses"].left, B)))
     _arrow(axes, ((b["target"].left, B), (b["watch"].right, B)))
@@ -127,26 +129,24 @@ def _show_flow(axes: Axes) -> None:
         axes,
         ((senses.x, senses.low), (senses.x, middle), (into, middle), (into, b["dwa"].top)),
     )
-    _say(axes, senses.x + 0.06, middle + 0.03, "free space, movers", palette.INK, "left")
+    _say(axes, senses.x + 0.06, middle + 0.03, "free space, what moves", palette.INK, "left")
     _say(axes, senses.x + 0.06, senses.top + 0.2, "what was seen", palette.INK, "left")
 
 
 def _show_feedback(axes: Axes) -> None:
     """What comes back when something is wrong."""
-    search, recovery, watch, dwa = (BLOCKS[k] for k in ("search", "recovery", "watch", "dwa"))
+    search, recovery, watch = (BLOCKS[k] for k in ("search", "recovery", "watch"))
     middle, at = 0.5 * (watch.top + search.low), 0.3
     _arrow(axes, ((watch.left, B), (recovery.right, B)), wrong=True)
     up: Points = ((watch.x, watch.top), (watch.x, middle))
     over: Points = ((search.x + at, middle), (search.x + at, search.low))
     _arrow(axes, (*up, *over), wrong=True)
     _say(axes, watch.x - 0.06, middle + 0.03, "replan", palette.DRIVEN, "right")
-    for away, begin, end, word, side in (
-        (-at, recovery.top, search.low, "replan", -1.0),
-        (at, recovery.low, dwa.top, "turn, back off", 1.0),
-    ):
-        _arrow(axes, ((recovery.x + away, begin), (recovery.x + away, end)), wrong=True)
-        place, ha = recovery.x + away + 0.06 * side, "left" if side > 0.0 else "right"
-        _say(axes, place, 0.5 * (begin + end) - 0.04, word, palette.DRIVEN, ha)
+    x = recovery.x - at
+    _arrow(axes, ((x, recovery.top), (x, search.low)), wrong=True)
+    _say(
+        axes, x - 0.06, 0.5 * (recovery.top + search.low) - 0.04, "replan", palette.DRIVEN, "right"
+    )
     _arrow(axes, ((recovery.left, B), (BLOCKS["senses"].right, B)), wrong=True)
     _say(axes, recovery.left - 0.03, B + 0.05, "forget", palette.DRIVEN, "right")
 

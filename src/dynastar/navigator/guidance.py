@@ -1,0 +1,122 @@
+"""The cost-to-go over the local map, joined to the global path's remaining length."""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.clearance import lower_bounds
+from dynastar.dwa.cost_to_go import (
+    add_moving,
+    extend,
+    favour,
+    march,
+    trace,
+    travel_cost,
+    value_at,
+)  # fmt: skip
+from dynastar.dwa.scene import CostToGo, DistanceField
+from dynastar.path import Path
+from dynastar.perception import LocalMap
+from dynastar.perception.prediction import People
+
+Floats = npt.NDArray[np.float64]
+Point = tuple[float, float]
+
+FACTOR = 2  # cells of the local map to one of the cost-to-go
+FAVOUR = 0.85  # of the cost along the line that was followed before, so that it is kept to
+LINE = 50  # points of that line
+BEYOND = 3.0  # m that the cost-to-go is known beyond the robot
+NEAR = 6  # cells to the nearest one where the robot fits, at most
+
+
+class Guidance:
+    """Keeps the cost-to-go of the present path; its arrays are made once.
+
+    ``reachable`` tells whether a way leads from the robot to where the path leaves the local map,
+    ``value`` (m) is the cost-to-go where the robot stands.
+    """
+
+    def __init__(self, cells: int, resolution: float, margin: float, comfort: float) -> None:
+        n = cells // FACTOR
+        self.spacing = resolution * FACTOR
+        self._margin, self._comfort = margin, comfort
+        self._cost, self._filled = np.empty((n, n)), np.empty((n, n))
+        self._value, self._bearing = np.full((n, n), np.inf), np.empty((n, n))
+        self._keys, self._nodes = np.empty(4 * n * n), np.empty(4 * n * n, np.int64)
+        self._line, self._count = np.empty((LINE, 2)), 0
+        self.reachable, self.value = False, math.inf
+
+    @property
+    def line(self) -> Floats:
+        """Points (n, 2), ``spacing`` metres apart, along the descent from the robot."""
+        return self._line[: self._count]
+
+    def update(
+        self,
+        local_map: LocalMap,
+        occupied: npt.NDArray[np.bool_],
+        path: Path,
+        s: float,
+        here: Point,
+        people: People,
+        meeting: tuple[float, float, float, float],
+    ) -> tuple[DistanceField, CostToGo]:
+        """Distances to obstacles and the cost-to-go for a robot at ``here``, ``s`` m along its path.
+
+        ``occupied`` (n, n) are the local map's cells with obstacles. ``meeting`` says when and how
+        the robot meets moving obstacles: the predictions' begin and step (s), its speed (m/s), its
+        radius (m).
+        """
+        x0, y0 = local_map.origin
+        a, n = self.spacing, len(self._cost)
+        resolution = local_map.config.resolution
+        obstacles = lower_bounds((~occupied).view(np.uint8), resolution)
+        travel_cost(obstacles, FACTOR, self._margin, self._comfort, self._cost)
+        begin, step, speed, radius = meeting
+        robot = (float(here[0]), float(here[1]))
+        add_moving(self._cost, (a, x0, y0), people, (begin, step), robot, radius, speed)
+        favour(self._cost, (a, x0, y0), self.line, FAVOUR)
+        row = min(max(int((here[1] - y0) / a), 0), n - 1)
+        column = min(max(int((here[0] - x0) / a), 0), n - 1)
+        stop = self._nearest_open(row, column, NEAR)
+        seed_row, seed_column, left = self._seed(path, s, x0, y0)
+        march(
+            self._cost, a, (seed_row, seed_column, left), stop, BEYOND, self._value, self._keys,
+            self._nodes,
+        )  # fmt: skip
+        self.reachable = bool(np.isfinite(self._value[stop]))
+        extend(self._cost, self._value, a, self._filled)
+        self._bearing[:] = np.nan
+        cost_to_go = CostToGo(self._value, self._filled, self._bearing, x0, y0, a)
+        self.value = float(value_at(cost_to_go, *robot))
+        self._count = trace(cost_to_go, *robot, self._line)
+        return DistanceField(obstacles, x0, y0, resolution), cost_to_go
+
+    def _seed(self, path: Path, s: float, x0: float, y0: float) -> tuple[int, int, float]:
+        """The cell where the path leaves the local map, or ends, and the length (m) left from there."""
+        a, n = self.spacing, len(self._cost)
+        points = path.resampled(s, path.length, 0.5 * a)
+        left = np.linspace(path.length - s, 0.0, len(points))
+        cells = np.floor((points - (x0, y0)) / a).astype(int)
+        out = np.flatnonzero(~((cells >= 2) & (cells < n - 2)).all(axis=1))
+        last = len(points) - 1 if len(out) == 0 else max(int(out[0]) - 1, 0)
+        cells = np.clip(cells, 0, n - 1)
+        for i in range(last, -1, -1):
+            column, row = map(int, cells[i])
+            row, column = self._nearest_open(row, column, NEAR // 2)
+            if math.isfinite(self._cost[row, column]):
+                return row, column, float(left[i])
+        return int(cells[last, 1]), int(cells[last, 0]), float(left[last])
+
+    def _nearest_open(self, row: int, column: int, reach: int) -> tuple[int, int]:
+        """The nearest cell where the robot fits, up to ``reach`` cells away, else the cell itself."""
+        if math.isfinite(self._cost[row, column]):
+            return row, column
+        top, left = max(row - reach, 0), max(column - reach, 0)
+        part = self._cost[top : row + reach + 1, left : column + reach + 1]
+        rows, columns = np.nonzero(np.isfinite(part))
+        if len(rows) == 0:
+            return row, column
+        k = int(np.argmin(np.hypot(rows + top - row, columns + left - column)))
+        return int(rows[k] + top), int(columns[k] + left)

@@ -1,0 +1,134 @@
+"""The chart that global plans are made on: the map, finer if need be, and what was seen since."""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.clearance import inflate
+from dynastar.errors import GoalOccupied, NoPath, StartOccupied
+from dynastar.grid import OccupancyGrid
+from dynastar.navigator.config import NavigatorConfig
+from dynastar.navigator.planning_map_kernels import cells_under, stands_under, take_over
+from dynastar.perception import Known, LocalMap
+from dynastar.planning import GridPlanner, Plan
+
+Mask = npt.NDArray[np.bool_]
+Cells = npt.NDArray[np.int64]
+Window = tuple[Cells, Cells, Cells]
+
+LONGER = 1.03  # times the tightest plan's length, a plan with room to spare is too long
+
+
+class PlanningMap:
+    """Plans on the map and the obstacles seen, with room to spare where there is room.
+
+    One planner keeps ``comfort`` more clearance than the footprint needs; where it finds no way, or
+    only a longer one, the plan is the other's, which keeps what a certified stop needs and no more.
+    """
+
+    def __init__(
+        self, grid: OccupancyGrid, config: NavigatorConfig, radius: float, tight: float
+    ) -> None:
+        factor = math.ceil(grid.resolution / config.planning_resolution - 1e-9)
+        self.grid = grid.refined(factor)
+        self.frame = self.grid.frame
+        self.prior = self.grid.blocked(config.unknown)
+        self._unknown = self.grid.unknown
+        if self.grid.keepout is not None:
+            self._unknown = self._unknown & ~self.grid.keepout
+        radii = sorted({radius + config.comfort, radius, tight}, reverse=True)
+        self.planners = [GridPlanner(self.grid, r, config.unknown, config.planner) for r in radii]
+        self.seen = np.zeros(self.prior.shape, np.bool_)
+        self.cleared = np.zeros(self.prior.shape, np.bool_)
+        self._marks = np.zeros(self.prior.shape, np.uint8)
+        self._under: tuple[tuple[float, float], Window] | None = None
+        near = inflate(self.grid.occupied, 1.0, outside_blocked=True)
+        self.known = Known(near, self.frame)
+
+    @property
+    def blocked(self) -> Mask:
+        """What stands in the way: the map's and the seen."""
+        return (self.prior & ~self.cleared) | self.seen
+
+    def take_in(self, layer: LocalMap) -> bool:
+        """Marks what the layer shows occupied and clears what it shows free; whether that changed."""
+        low, high, under = self._window(layer)
+        top, bottom, left, right = take_over(
+            layer.states, under, low, high,
+            self._marks, self.known.mask, self._unknown, self.seen, self.cleared,
+        )  # fmt: skip
+        if bottom <= top:
+            return False
+        self._mark(top, bottom, left, right)
+        return True
+
+    def blocked_under(self, layer: LocalMap) -> Mask:
+        """Whether something stands under each of a layer's cells; off the chart it does."""
+        under = self._window(layer)[2]
+        blocked = np.empty(under.shape, np.bool_)
+        stands_under(under, self.prior, self.seen, self.cleared, blocked)
+        return blocked
+
+    def on_free_ground(self, points: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """Those of the points (n, 2 or more), metres, where the map has nothing."""
+        cells = np.floor(self.frame.points_to_grid(points[:, :2])).astype(np.int64)
+        inside = ((cells >= 0) & (cells < self.prior.shape)).all(axis=1)
+        rows, columns = cells[inside].T
+        return points[inside][~self.grid.occupied[rows, columns]]
+
+    def forget(self) -> None:
+        """Drops everything seen."""
+        rows, columns = np.nonzero(self.seen)
+        self.seen[:] = False
+        if len(rows):
+            self._mark(rows.min(), rows.max() + 1, columns.min(), columns.max() + 1)
+
+    def plan(self, start: tuple[float, float], goal: tuple[float, float], explored: bool) -> Plan:
+        """The roomiest plan that is as short as any; raises what the tightest planner raises.
+
+        A start too close to something for a roomy planner has to be led out of that by a way that
+        the tightest can follow.
+        """
+        tight = self.planners[-1].plan(start, goal, explored=explored)
+        for planner in self.planners[:-1]:
+            try:
+                plan = planner.plan(start, goal, explored=explored)
+            except (NoPath, GoalOccupied, StartOccupied):
+                continue
+            if plan.path.length > LONGER * tight.path.length:
+                continue
+            lead = plan.path.resampled(0.0, plan.clear_from, 1e9)
+            if plan.clear_from == 0.0 or self.blocked_at(lead) is None:
+                return plan
+        return tight
+
+    def blocked_at(self, points: npt.NDArray[np.float64]) -> float | None:
+        """Metres along a polyline (n, 2) to where even the tightest planner could not go."""
+        return self.planners[-1].path_blocked_at(points)
+
+    def speed_limit(self, points: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """The map's speed limit (m/s, inf for none) at points (n, 2)."""
+        limits = np.full(len(points), np.inf)
+        if self.grid.speed_limit is not None:
+            cells = np.floor(self.frame.points_to_grid(points)).astype(np.int64)
+            inside = ((cells >= 0) & (cells < self.prior.shape)).all(axis=1)
+            limits[inside] = self.grid.speed_limit[cells[inside, 0], cells[inside, 1]]
+        return limits
+
+    def _window(self, layer: LocalMap) -> Window:
+        """The chart's cells [low, high) under a layer, and the index of the one under each of its."""
+        if self._under is not None and self._under[0] == layer.origin:
+            return self._under[1]
+        window = cells_under(
+            len(layer.states), layer.config.resolution, *layer.origin,
+            *map(float, self.frame), *self.prior.shape,
+        )  # fmt: skip
+        self._under = layer.origin, window
+        return self._under[1]
+
+    def _mark(self, top: int, bottom: int, left: int, right: int) -> None:
+        part = np.s_[top:bottom, left:right]
+        patch = (self.prior[part] & ~self.cleared[part]) | self.seen[part]
+        for planner in self.planners:
+            planner.mark(int(top), int(left), patch)

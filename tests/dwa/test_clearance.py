@@ -1,0 +1,110 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from dynastar.dwa import body_of
+from dynastar.dwa.clearance import body_distance, distance_at, polygon_distance, spare
+from dynastar.robot import ROBOTS, Footprint, Robot
+from naive import spare_of_rule
+from scenes import CELL, boxed, centres_of, empty, field_of
+
+FOOTPRINTS = {
+    "disc": Footprint.disc(0.3),
+    "box": ROBOTS["jackal"].footprint,
+    "off-centre": Footprint.polygon([(0.5, -0.1), (0.5, 0.2), (-0.1, 0.25), (-0.2, -0.2)]),
+}
+footprints = st.sampled_from(sorted(FOOTPRINTS))
+MARGIN = 0.06
+
+
+def body(name):
+    return body_of(Robot(name, ROBOTS["paper"].limits, FOOTPRINTS[name]))
+
+
+def at(x, y, theta=0.0):
+    return x, y, math.cos(theta), math.sin(theta)
+
+
+def scattered(random, share=0.004):
+    return empty() | (random.random(empty().shape) < share)
+
+
+@given(st.integers(0, 10**6))
+@settings(max_examples=20, deadline=None)
+def test_the_distance_at_a_point_is_a_lower_bound_and_a_tight_one(seed):
+    random = np.random.default_rng(seed)
+    closed = scattered(random, random.uniform(0.0001, 0.02))
+    field, centres = field_of(closed), centres_of(closed)
+    for x, y in random.uniform(-0.5, 8.5, (50, 2)):
+        found = distance_at(field, x, y)
+        true = np.hypot(*(centres - (x, y)).T).min()
+        assert 0.0 <= found <= true + 1e-6
+        if min(x, y) > 0.1 and max(x, y) < 7.9:
+            assert found > 0.96 * true - CELL
+
+
+@given(footprints, *[st.floats(-1.5, 1.5)] * 2, st.floats(-4, 4))
+@settings(deadline=None)
+def test_the_distance_to_a_footprint(name, x, y, theta):
+    import shapely
+
+    shape = FOOTPRINTS[name]
+    if shape.is_disc:
+        expected = max(0.0, math.hypot(x, y) - shape.circumscribed)
+    else:
+        cos, sin = math.cos(theta), math.sin(theta)
+        turned = shape.vertices @ np.array([[cos, sin], [-sin, cos]])
+        expected = shapely.Polygon(turned).distance(shapely.Point(x, y))
+        assert polygon_distance(shape.vertices, x, y) == pytest.approx(
+            shapely.Polygon(shape.vertices).distance(shapely.Point(x, y)), abs=1e-9
+        )
+    assert body_distance(body(name), at(0.0, 0.0, theta), x, y) == pytest.approx(expected, abs=1e-9)
+
+
+@given(footprints, st.integers(0, 10**6))
+@settings(max_examples=60, deadline=None)
+def test_what_is_to_spare_is_what_the_rule_says_cell_by_cell(name, seed):
+    random = np.random.default_rng(seed)
+    closed = scattered(random, random.choice([0.0005, 0.004, 0.03]))
+    field, centres = field_of(closed), centres_of(closed)
+    start = at(*random.uniform(0.3, 7.7, 2), random.uniform(-4, 4))
+    for _ in range(6):
+        pose = at(*random.normal(start[:2], 0.15), random.uniform(-4, 4))
+        found = spare(field, body(name), MARGIN, start, pose)
+        true = spare_of_rule(centres, FOOTPRINTS[name], MARGIN, start, pose)
+        assert (found < -1e-6) == (true < -1e-6)
+        assert found >= true - 1e-6 if true < 0.0 else found <= true + 1e-5
+        if 0.0 <= true < CELL and found < CELL - 1e-9:  # near zero it is exact
+            near = distance_at(field, *pose[:2]) - body(name).circumscribed
+            assert found == pytest.approx(true, abs=1e-6) or near >= MARGIN
+
+
+@pytest.mark.parametrize("name", sorted(FOOTPRINTS))
+def test_what_was_nearer_at_the_start_may_stay_as_near_but_not_come_nearer(name):
+    front = 0.3 if name == "disc" else FOOTPRINTS[name].vertices[:, 0].max()
+    closed = boxed((4.0, 3.9, 4.05, 4.1))  # its centres are at x = 4.025
+    start = at(4.025 - front - 0.03, 4.0)
+    field = field_of(closed)
+    assert spare(field, body(name), MARGIN, start, start) == pytest.approx(0.0, abs=1e-5)
+    assert spare(field, body(name), MARGIN, start, at(start[0] - 0.01, 4.0)) >= 0.0
+    assert spare(field, body(name), MARGIN, start, at(start[0] + 0.01, 4.0)) < -0.005
+    far = at(start[0] - 0.5, 4.0)  # who starts away from it keeps the whole margin
+    assert spare(field, body(name), MARGIN, far, start) == pytest.approx(-0.03, abs=0.01)
+
+
+@pytest.mark.parametrize("name", sorted(FOOTPRINTS))
+def test_a_closed_cell_inside_the_footprint_does_not_void_the_check_of_others(name):
+    closed = boxed((4.0, 4.0, 4.05, 4.05), (4.8, 3.0, 4.9, 5.0))
+    start = at(4.0, 4.0)
+    field = field_of(closed)
+    assert spare(field, body(name), MARGIN, start, start) == 0.0
+    assert spare(field, body(name), MARGIN, start, at(4.05, 4.0)) == 0.0
+    assert spare(field, body(name), MARGIN, start, at(4.6, 4.0)) < -1e-3
+
+
+def test_what_lies_outside_the_field_counts_as_closed():
+    assert distance_at(field_of(empty()), -1.0, 4.0) == 0.0
+    assert spare(field_of(empty()), body("disc"), MARGIN, at(4.0, 4.0), at(0.2, 4.0)) < 0.0

@@ -1,0 +1,139 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from dynastar.dwa import CostToGo
+from dynastar.dwa import cost_to_go as c
+from dynastar.perception import MovingObstacle, PredictionConfig
+from dynastar.perception.prediction import predict
+from naive import shortest
+
+A = 0.1
+FRAME = (A, 0.0, 0.0)
+
+
+def march(cost, row, column, begin=0.0, stop=None, beyond=1e3):
+    value = np.empty(cost.shape)
+    keys, nodes = np.empty(4 * cost.size), np.empty(4 * cost.size, np.int64)
+    c.march(cost, A, (row, column, begin), stop or (row, column), beyond, value, keys, nodes)
+    return value
+
+
+def ahead_of(value, filled=None):
+    return CostToGo(
+        value, value if filled is None else filled, np.full(value.shape, np.nan), 0.0, 0.0, A
+    )
+
+
+@given(st.integers(0, 10**6), st.sampled_from([0.0, 0.1, 0.25, 0.4]))
+@settings(max_examples=60, deadline=None)
+def test_the_march_is_as_long_as_the_shortest_way_and_reaches_the_same_cells(seed, share):
+    random = np.random.default_rng(seed)
+    blocked = random.random((30, 40)) < share
+    start = tuple(random.integers(0, (30, 40)))
+    blocked[start] = False
+    value = march(np.where(blocked, np.inf, 1.0), *start, begin=2.0)
+    lengths = shortest(blocked, start)  # in steps straight or diagonal: up to 8 % too long
+    for cell in np.ndindex(value.shape):
+        if cell not in lengths:
+            assert value[cell] == np.inf
+        else:
+            way = lengths[cell] * A
+            assert 0.92 * way - 1e-9 <= value[cell] - 2.0 <= 1.15 * way + 0.05
+            if share == 0.0:
+                euclid = math.dist(start, cell) * A
+                assert euclid - 1e-9 <= value[cell] - 2.0 <= 1.15 * euclid + 0.05
+
+
+def test_a_slow_region_costs_as_much_more_as_it_is_slow():
+    cost = np.ones((5, 40))
+    cost[:, 10:30] = 3.0
+    value = march(cost, 2, 0)
+    assert value[2, 9] == pytest.approx(0.9)
+    assert value[2, 29] == pytest.approx(0.9 + 6.0)
+    assert value[2, 39] == pytest.approx(0.9 + 6.0 + 1.0)
+
+
+def test_the_march_ends_a_while_after_where_it_is_asked_for():
+    value = march(np.ones((5, 100)), 2, 0, stop=(2, 40), beyond=1.0)
+    assert value[2, 40] == pytest.approx(4.0)
+    assert np.isfinite(value[2, 49])
+    assert value[2, 52] == np.inf
+
+
+@given(st.integers(0, 10**6))
+@settings(max_examples=30, deadline=None)
+def test_the_cost_of_a_metre_rises_towards_obstacles(seed):
+    distance = np.random.default_rng(seed).uniform(0.0, 1.2, (20, 24)).astype(np.float32)
+    cost = np.empty((10, 12))
+    c.travel_cost(distance, 2, 0.35, 0.25, cost)
+    clear = distance.reshape(10, 2, 12, 2).max(axis=(1, 3)).astype(float) - 0.35
+    expected = 1.0 + c.NEAR_COST * np.maximum(0.0, 1.0 - clear / 0.25) ** 2
+    np.testing.assert_allclose(cost, np.where(clear < 0.0, np.inf, expected), rtol=1e-6)
+
+
+def test_the_middle_of_a_corridor_is_what_descends():
+    y = (np.arange(40) + 0.5) * 0.05
+    distance = np.tile(np.minimum(y, 2.0 - y)[:, None], (1, 160)).astype(np.float32)
+    cost = np.empty((20, 80))
+    c.travel_cost(distance, 2, 0.3, 0.6, cost)
+    value = march(cost, 10, 78)
+    line = np.empty((90, 2))
+    n = c.trace(ahead_of(value), 0.5, 0.5, line)
+    assert n > 60
+    assert line[n - 1, 0] > 7.3
+    assert abs(line[20:50, 1] - 1.0).max() < 0.15
+
+
+def test_between_cells_values_are_interpolated_and_fall_along_the_descent():
+    rows, columns = np.mgrid[:30, :30]
+    plane = 0.6 * (columns + 0.5) * A - 0.8 * (rows + 0.5) * A + 5.0
+    ahead = ahead_of(plane)
+    for x, y in np.random.default_rng(1).uniform(0.2, 2.8, (20, 2)):
+        assert c.value_at(ahead, x, y) == pytest.approx(0.6 * x - 0.8 * y + 5.0)
+        assert c.descent(ahead, x, y) == pytest.approx(math.atan2(0.8, -0.6))
+        assert c.bearing_at(ahead, x, y) == pytest.approx(math.atan2(0.8, -0.6))
+    assert np.isfinite(ahead.bearing).any()  # kept
+
+
+def test_who_is_where_no_way_leads_is_led_out_of_it():
+    cost = np.ones((30, 30))
+    cost[10:20, 10:20] = np.inf
+    value = march(cost, 15, 2)
+    filled = np.empty_like(value)
+    c.extend(cost, value, A, filled)
+    inside = filled[10:20, 10:20]
+    assert np.isfinite(filled).all()
+    assert (filled[np.isfinite(value)] == value[np.isfinite(value)]).all()
+    assert inside.min() > value[np.isfinite(value)].min() + c.WALL_COST * A
+    for row, column in np.ndindex(inside.shape):  # some neighbour is lower
+        r, k = row + 10, column + 10
+        around = filled[r - 1, k], filled[r + 1, k], filled[r, k - 1], filled[r, k + 1]
+        assert min(around) < filled[r, k]
+
+
+def test_a_line_that_was_followed_is_favoured_once():
+    cost = np.ones((20, 20))
+    cost[5, 5] = np.inf
+    line = np.array([(0.55, 0.55), (0.56, 0.55), (1.05, 0.55), (-3.0, 9.0)])
+    c.favour(cost, FRAME, line, 0.85)
+    assert sorted(set(cost.ravel())) == [0.85, 1.0, np.inf]
+    assert (cost[4:7, 4:7] != 1.0).all()
+    assert (cost[8:] == 1.0).all()
+
+
+def test_a_mover_costs_where_and_when_it_is_met():
+    """It crosses ahead; the robot is there when it is at (3.05, 2), not when it was further down."""
+    people = predict([MovingObstacle(3.05, 0.5, 0.0, 0.5, 0.3)], PredictionConfig(), 0.0, 0.1, 40)
+    cost = np.ones((40, 60))
+    c.add_moving(cost, FRAME, people, (0.0, 0.1), (0.05, 2.0), 0.3, 1.0)
+    assert cost[20, 30] > 1.0 + 0.5 * 0.7 * c.MEETING_COST
+    assert cost[20, 10] == 1.0  # before it comes
+    assert cost.max() <= 1.0 + c.MEETING_COST + 1e-9
+    nobody = np.ones((40, 60))
+    alone = predict([], PredictionConfig(), 0.0, 0.1, 40)
+    c.add_moving(nobody, FRAME, alone, (0.0, 0.1), (0.05, 2.0), 0.3, 1.0)
+    assert (nobody == 1.0).all()

@@ -1,0 +1,146 @@
+"""The search over the window, and the window round it."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from dynastar.dwa import DynamicWindow
+from dynastar.dwa.config import DwaConfig, Weights
+from dynastar.dwa.objective import note_risk, risk
+from dynastar.geometry import Pose2D, Twist
+from dynastar.perception import MovingObstacle
+from dynastar.robot import ROBOTS, Footprint, Limits, Robot, arc, slew
+from scenes import STEP, boxed, empty, scene_of
+
+PERIOD = 0.1
+LIMITS = Limits(1.0, 1.5, 0.8, 2.0, 0.8, 2.0, v_min=-0.3)
+ROUND = Robot("round", LIMITS, Footprint.disc(0.3))
+
+
+def choose(closed, pose, twist=Twist(0.0, 0.0), robot=ROUND, config=DwaConfig(), **more):
+    window = DynamicWindow(robot, config, PERIOD)
+    radius = robot.footprint.inscribed
+    scene = scene_of(closed, radius=radius, last=tuple(twist), **more)
+    return window.choose(Pose2D(*pose), twist, scene, robot.limits.v_max)
+
+
+def drive(closed, pose, goal, seconds, robot=ROUND):
+    """Ticks of a drive that does exactly as told: (pose, twist, choice)."""
+    window, pose, twist, last = (
+        DynamicWindow(robot, DwaConfig(), PERIOD),
+        Pose2D(*pose),
+        Twist(0.0, 0.0),
+        (0.0, 0.0),
+    )
+    scene = scene_of(closed, goal, radius=robot.footprint.inscribed)
+    for _ in range(round(seconds / PERIOD)):
+        choice = window.choose(pose, twist, scene._replace(last_v=last[0], last_omega=last[1]), 9.0)
+        last = tuple(choice.sample or (0.0, 0.0))
+        command = choice.command or Twist(
+            slew(twist.v, 0.0, 1.0, robot.limits.v_brake, PERIOD),
+            slew(twist.omega, 0.0, 1.0, robot.limits.omega_brake, PERIOD),
+        )
+        mean = Twist(0.5 * (twist.v + command.v), 0.5 * (twist.omega + command.omega))
+        pose, twist = arc(pose, mean, PERIOD), command
+        yield pose, twist, choice
+
+
+STOPS_SHORT = pytest.mark.xfail(strict=True, reason="rests 0.76 m before its goal")
+JACKAL, BURGER = ROBOTS["jackal"], ROBOTS["turtlebot3_burger"]
+
+
+@pytest.mark.parametrize(
+    ("robot", "start"),
+    [
+        (ROUND, (1.0, 4.0, 0.0)),
+        (ROUND, (1.0, 2.0, 2.5)),
+        pytest.param(ROUND, (6.0, 6.5, 1.0), marks=STOPS_SHORT),
+        (JACKAL, (1.0, 4.0, 0.0)),
+        (JACKAL, (1.0, 2.0, 2.5)),
+        (BURGER, (1.0, 4.0, 0.0)),
+        (BURGER, (6.0, 6.5, 1.0)),
+    ],
+)
+def test_an_empty_scene_is_driven_through_to_the_goal(robot, start):
+    goal = (4.0, 4.0)
+    seconds = 6.0 + 2.5 * math.dist(start[:2], goal) / robot.limits.v_max
+    near = [math.dist(p[:2], goal) < 0.5 for p, _, _ in drive(empty(), start, goal, seconds, robot)]
+    assert any(near)
+
+
+def test_a_wall_ahead_is_driven_round_and_never_touched():
+    closed = boxed((3.5, 2.5, 3.7, 5.5))
+    gaps, ends = [], []
+    for pose, _, _ in drive(closed, (1.5, 4.0, 0.0), (6.0, 4.0), 20.0):
+        dx = max(3.5 - pose.x, pose.x - 3.7, 0.0)
+        dy = max(2.5 - pose.y, pose.y - 5.5, 0.0)
+        gaps.append(math.hypot(dx, dy))
+        ends.append(math.dist(pose[:2], (6.0, 4.0)))
+    assert min(gaps) > 0.3
+    assert min(ends) < 0.25
+
+
+def test_shut_in_one_stands():
+    closed = boxed(
+        (3.0, 3.0, 5.0, 3.2), (3.0, 4.8, 5.0, 5.0), (3.0, 3.0, 3.2, 5.0), (4.8, 3.0, 5.0, 5.0)
+    )
+    for pose, _, _ in drive(closed, (4.0, 4.0, 0.0), (6.0, 4.0), 4.0):
+        assert max(abs(pose.x - 4.0), abs(pose.y - 4.0)) < 0.8 - 0.3
+
+
+def risk_of(choice_twist, scene, pose):
+    """The risk of holding a twist for 3 s."""
+    worst = np.zeros((len(scene.people.now), 3))
+    for k in range(30):
+        at = arc(pose, choice_twist, STEP * (k + 1))
+        note_risk(scene.people, k, STEP * (k + 1), at.x, at.y, 0.3, worst)
+    return risk(scene.people, worst)
+
+
+@pytest.mark.parametrize("lateral", [-0.15, 0.15])
+def test_a_mover_head_on_is_run_less_risk_with_than_straight_on(lateral):
+    mover = MovingObstacle(4.2, 4.0 + lateral, -0.8, 0.0, 0.3)
+    twist = Twist(0.6, 0.0)
+    choice = choose(empty(), (1.5, 4.0, 0.0), twist, movers=[mover])
+    scene = scene_of(empty(), movers=[mover])
+    pose = Pose2D(1.5, 4.0, 0.0)
+    assert choice.sample is not None
+    assert risk_of(choice.sample, scene, pose) < 0.7 * risk_of(twist, scene, pose)
+    careless = choose(
+        empty(), (1.5, 4.0, 0.0), twist, movers=[mover], config=DwaConfig(Weights(risk=0.0))
+    )
+    assert careless.sample.v > 0.6
+    assert abs(careless.sample.omega) < 0.2
+
+
+@given(st.sampled_from(sorted(ROBOTS)), st.floats(0, 1), st.floats(-1, 1), st.integers(0, 10**6))
+@settings(max_examples=40, deadline=None)
+def test_the_choice_is_the_admissible_sample_with_the_highest_score(name, v, omega, seed):
+    robot, random = ROBOTS[name], np.random.default_rng(seed)
+    closed = empty() | (random.random(empty().shape) < 0.001)
+    limits = robot.limits
+    twist = Twist(v * limits.v_max, omega * limits.omega_max)
+    choice = choose(closed, (*random.uniform(2, 6, 2), random.uniform(-3, 3)), twist, robot)
+    admitted = choice.refused == 0
+    assert sum(choice.refusals.values()) == (~admitted).sum()
+    assert (choice.score[~admitted] == -np.inf).all()
+    if choice.command is None:
+        assert not np.isfinite(choice.score).any()
+        return
+    best = int(np.argmax(choice.score))
+    assert choice.score[best] == choice.score.max()
+    assert tuple(choice.sample) in [
+        tuple(s) for s in choice.samples[choice.score == choice.score[best]]
+    ]
+    assert limits.v_min - 1e-9 <= choice.command.v <= limits.v_max + 1e-9
+    assert abs(choice.command.omega) <= limits.omega_max + 1e-9
+    wanted = choice.sample
+    assert choice.command.v == pytest.approx(
+        slew(twist.v, wanted.v, limits.v_accel, limits.v_brake, PERIOD)
+    )
+    assert choice.command.omega == pytest.approx(
+        slew(twist.omega, wanted.omega, limits.omega_accel, limits.omega_brake, PERIOD)
+    )
