@@ -20,10 +20,6 @@ BACKING = Robot("backing", LIMITS._replace(v_min=-0.5), ROUND.footprint, ROUND.l
 # -- goals -----------------------------------------------------------------------------------------
 
 
-PUT_OFF = pytest.mark.xfail(strict=True, reason="what can be done later is put off for ever")
-
-
-@PUT_OFF
 def test_goals_are_reached_in_order():
     drive = Drive(room())
     goals = [Goal(4.0, 4.5), Goal(6.5, 3.0), Goal(4.0, 1.5)]
@@ -131,7 +127,6 @@ def test_data_that_come_back_after_the_end_are_no_reason_to_drive():
     assert drive.status.state == "idle"
 
 
-@PUT_OFF
 def test_a_start_inside_the_inflation_finds_its_way_out():
     drive = Drive(room(), pose=(0.38, 3.0, math.pi / 2))  # 3 cm from the wall
     drive.navigator.set_goal(Goal(6.5, 3.0))
@@ -155,7 +150,6 @@ def test_what_is_kept_out_of_is_never_entered():
         assert drive.now < 60.0
 
 
-@pytest.mark.xfail(strict=True, reason="the last sample is offered again, faster than the limit")
 def test_a_speed_limit_of_the_map_is_kept():
     grid = room(12.0, 6.0)
     limit = np.full(grid.values.shape, np.inf)
@@ -178,12 +172,19 @@ def test_movers_that_are_given_replace_those_tracked():
     drive = under_way()
     ahead = drive.pose.x + 1.2
     standing = MovingObstacle(ahead, 3.0, 0.0, 0.0, 0.3)
+
+    def refused():
+        choice = drive.status.choice
+        return choice is None or choice.refusals["moving obstacle"] > 0
+
+    seen = []
     for _ in range(40):
         drive.tick(movers=[standing])
+        seen.append(refused())
         assert math.dist(drive.pose[:2], (ahead, 3.0)) > 0.3 + ROUND.footprint.circumscribed
-    assert drive.twist.v < 0.1 or abs(drive.pose.y - 3.0) > 0.2
+    assert any(seen)
     drive.for_seconds(1.0)
-    assert drive.status.choice.refusals["moving obstacle"] == 0  # the tracker sees nobody
+    assert not refused()  # the tracker sees nobody
 
 
 def test_a_mover_that_is_not_finite_is_left_out():
@@ -235,8 +236,8 @@ def test_a_preset_may_rule_out_driving_back():
 @pytest.mark.parametrize(
     ("name", "start", "goal"),
     [
-        pytest.param("jackal", (1.5, 4.0, 0.0), (4.5, 4.0), marks=PUT_OFF),
-        pytest.param("pioneer3dx", (6.0, 6.5, 1.0), (4.0, 4.0), marks=PUT_OFF),
+        pytest.param("jackal", (1.5, 4.0, 0.0), (4.5, 4.0)),
+        pytest.param("pioneer3dx", (6.0, 6.5, 1.0), (4.0, 4.0)),
         ("turtlebot3_burger", (6.0, 6.5, 1.0), (4.0, 4.0)),
         ("paper", (6.0, 6.5, 1.0), (4.0, 4.0)),
     ],
