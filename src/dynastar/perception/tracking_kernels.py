@@ -24,6 +24,7 @@ MARGIN = 0.1  # m round a disc where points are still its own; further from its 
 SURE = 2.0  # standard deviations
 STEADY = 0.14  # s that motion has to last
 FITS = 4.0  # the largest T_MISFIT of steady motion; 2 is expected
+SHIFT = 0.05  # m that the centre of what moves shifts by at most when an end comes into view or out
 MISSED = 0.35  # s that something in view may go undetected
 SMOOTHING = 0.3  # s over which the radius, T_FREE and T_MISFIT are averaged
 
@@ -90,7 +91,7 @@ def correct(tracks, groups, points, sensor, now):
     """The Kalman update of every track with the disc that fits its group.
 
     The centre shifts, which is no motion, where the radius is corrected and where an end comes into
-    view or out of it.
+    view or out of it; for what is known to move, by up to ``SHIFT``.
     """
     for t in range(len(tracks)):
         row = tracks[t]
@@ -122,20 +123,21 @@ def correct(tracks, groups, points, sensor, now):
         k_p, k_v = row[T_PP] / s, row[T_PV] / s
         misfit = (ex * ex + ey * ey) / s
         row[T_MISFIT] += dt / (SMOOTHING + dt) * (misfit - row[T_MISFIT])
-        if ends == row[T_ENDS]:
-            row[T_X] += k_p * ex
-            row[T_Y] += k_p * ey
-            row[T_VX] += k_v * ex
-            row[T_VY] += k_v * ey
-            row[T_VV] -= k_v * row[T_PV]
-            row[T_PV] -= k_p * row[T_PV]
-            row[T_PP] -= k_p * row[T_PP]
-        else:
-            row[T_X] += ex
-            row[T_Y] += ey
-            row[T_X0] += ex
-            row[T_Y0] += ey
-            row[T_PP], row[T_PV] = error, 0.0
+        if ends != row[T_ENDS]:
+            most = SHIFT if row[T_STATE] == CONFIRMED else np.inf
+            shift = min(1.0, most / max(math.hypot(ex, ey), 1e-9))
+            row[T_X] += shift * ex
+            row[T_Y] += shift * ey
+            row[T_X0] += shift * ex
+            row[T_Y0] += shift * ey
+            ex, ey = (1.0 - shift) * ex, (1.0 - shift) * ey
+        row[T_X] += k_p * ex
+        row[T_Y] += k_p * ey
+        row[T_VX] += k_v * ex
+        row[T_VY] += k_v * ey
+        row[T_VV] -= k_v * row[T_PV]
+        row[T_PV] -= k_p * row[T_PV]
+        row[T_PP] -= k_p * row[T_PP]
         row[T_ENDS] = ends
         gain = dt / (min(row[T_SEEN] - row[T_BORN], SMOOTHING) + dt)
         row[T_FREE] += gain * (group[d.G_FREE] - row[T_FREE])
