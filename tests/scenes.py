@@ -7,6 +7,7 @@ import numpy as np
 from dynastar.clearance import lower_bounds
 from dynastar.dwa import CostToGo, DistanceField, Scene
 from dynastar.dwa.cost_to_go import extend, march
+from dynastar.dwa.scene import AT_REST
 from dynastar.perception import PredictionConfig
 from dynastar.perception.hidden import Hidden
 from dynastar.perception.prediction import predict
@@ -15,7 +16,7 @@ CELL, SIDE = 0.05, 160  # 8 x 8 m, from (0, 0)
 NOBODY_HIDDEN = Hidden(
     np.full((SIDE // 2, SIDE // 2), 9.0, np.float32), 0.0, 0.0, 0.1, 0.25, 0.0, 0.1
 )
-STEP, HORIZON = 0.1, 40
+STEP, HORIZON = 0.1, 80
 
 
 def empty():
@@ -48,22 +49,22 @@ def cost_to_go(closed, goal, radius):
     """The cost-to-go to ``goal`` of a disc, without any soft cost."""
     n = SIDE // 2
     room = field_of(closed).distance.reshape(n, 2, n, 2).max(axis=(1, 3)) >= radius
-    value, filled, bearing = np.empty((n, n)), np.empty((n, n)), np.full((n, n), np.nan)
+    value, filled, slope = np.empty((n, n)), np.empty((n, n)), np.full((n, n, 2), np.nan)
     row, column = (int(metres / (2 * CELL)) for metres in goal[::-1])
     keys, nodes = np.empty(4 * n * n), np.empty(4 * n * n, np.int64)
     cost = np.where(room, 1.0, np.inf)
     march(cost, 2 * CELL, (row, column, 0.0), (row, column), 99.0, value, keys, nodes)
     extend(cost, value, 2 * CELL, filled)
-    return CostToGo(value, filled, bearing, 0.0, 0.0, 2 * CELL)
+    return CostToGo(value, filled, slope, 0.0, 0.0, 2 * CELL)
 
 
 def scene_of(closed, goal=(7.0, 4.0), movers=(), radius=0.3, margin=0.05, hidden=NOBODY_HIDDEN,
-             ahead=0.0, last=(0.0, 0.0)):  # fmt: skip
+             ahead=0.0, last=AT_REST, v_cap=9.0):  # fmt: skip
     """A scene in which all that is closed is occupied, too."""
     field = field_of(closed)
     people = predict(movers, PredictionConfig(), ahead, STEP, HORIZON)
     to_go = cost_to_go(closed, goal, radius + margin)
-    return Scene(field, field, to_go, people, hidden, margin, ahead, *last)
+    return Scene(field, field, to_go, people, hidden, margin, margin, ahead, last, v_cap)
 
 
 def state_of(x, y, theta, v=0.0, omega=0.0):

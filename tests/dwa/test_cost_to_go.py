@@ -24,7 +24,7 @@ def march(cost, row, column, begin=0.0, stop=None, beyond=1e3):
 
 def ahead_of(value, filled=None):
     return CostToGo(
-        value, value if filled is None else filled, np.full(value.shape, np.nan), 0.0, 0.0, A
+        value, value if filled is None else filled, np.full((*value.shape, 2), np.nan), 0.0, 0.0, A
     )
 
 
@@ -94,9 +94,23 @@ def test_between_cells_values_are_interpolated_and_fall_along_the_descent():
     ahead = ahead_of(plane)
     for x, y in np.random.default_rng(1).uniform(0.2, 2.8, (20, 2)):
         assert c.value_at(ahead, x, y) == pytest.approx(0.6 * x - 0.8 * y + 5.0)
-        assert c.descent(ahead, x, y) == pytest.approx(math.atan2(0.8, -0.6))
-        assert c.bearing_at(ahead, x, y) == pytest.approx(math.atan2(0.8, -0.6))
-    assert np.isfinite(ahead.bearing).any()  # kept
+        assert c.direction_at(ahead, x, y) == pytest.approx((-0.6, 0.8))
+    assert np.isfinite(ahead.slope).any()  # kept
+
+
+def test_beside_walls_the_descent_leads_along_the_way_and_not_off_them():
+    cost = np.full((30, 30), np.inf)
+    cost[10:12, 3:27] = 1.0  # a corridor of two cells
+    value = march(cost, 10, 25)
+    filled = np.empty_like(value)
+    c.extend(cost, value, A, filled)
+    ahead = ahead_of(value, filled)
+    for x in np.arange(0.45, 2.3, 0.13):
+        for y in (1.05, 1.1, 1.15):
+            ux, uy = c.direction_at(ahead, x, y)
+            assert ux > 0.85
+            assert abs(uy) < 0.5
+    assert c.descent(ahead, 10, 25) == (0.0, 0.0)  # nothing is lower
 
 
 def test_who_is_where_no_way_leads_is_led_out_of_it():

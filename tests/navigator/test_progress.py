@@ -5,44 +5,62 @@ import pytest
 from dynastar.navigator.progress import LEAP, STEP, Progress
 
 
-def times_stuck(progress, values, period=1.0, start=0.0):
-    """The times (s) at which a progress says that the robot is stuck."""
-    ticks = [(start + period * k, value) for k, value in enumerate(values)]
-    return [now for now, value in ticks if progress.stuck(now, value)]
+def towards(goal, offset=0.0):
+    """A cost-to-go that is the distance along x, raised everywhere by ``offset`` (m)."""
+    return lambda x, y: goal - x + offset
 
 
-def test_a_falling_cost_to_go_is_progress():
-    assert times_stuck(Progress(3.0), [10.0 - 2.0 * STEP * k for k in range(40)]) == []
+def times_stuck(progress, places, start=0.0, offset=lambda k: 0.0):
+    """The times (s) at which a progress says that the robot is stuck, a place every second."""
+    return [
+        start + k
+        for k, x in enumerate(places)
+        if progress.stuck(start + k, (x, 0.0), towards(50.0, offset(k)))
+    ]
+
+
+def test_a_lower_cost_to_go_is_progress():
+    assert times_stuck(Progress(3.0), [2.0 * STEP * k for k in range(40)]) == []
+
+
+def test_slow_progress_counts_once_it_adds_up():
+    assert times_stuck(Progress(3.0), [0.4 * STEP * k for k in range(40)]) == []
 
 
 @pytest.mark.parametrize("drift", [0.0, 0.1 * STEP, -0.1])
-def test_without_a_fall_for_the_patience_the_robot_is_stuck(drift):
+def test_without_progress_for_the_patience_the_robot_is_stuck(drift):
     progress = Progress(3.0)
-    assert times_stuck(progress, [10.0 - drift * k for k in range(5)]) == [4.0]
+    assert times_stuck(progress, [drift * k for k in range(5)]) == [4.0]
     assert progress.rounds == 1
+
+
+@pytest.mark.parametrize("offset", [lambda k: 3.0 * (k % 2), lambda k: 0.5 * k, lambda k: -0.5 * k])
+def test_a_cost_to_go_that_changes_everywhere_says_nothing(offset):
+    assert times_stuck(Progress(3.0), [2.0 * STEP * k for k in range(40)], offset=offset) == []
+    assert times_stuck(Progress(3.0), [0.0] * 5, offset=offset) == [4.0]
 
 
 def test_each_further_patience_is_another_round():
     progress = Progress(3.0)
-    assert times_stuck(progress, [10.0] * 15) == [4.0, 9.0, 14.0]
+    assert times_stuck(progress, [0.0] * 13) == [4.0, 8.0, 12.0]
     assert progress.rounds == 3
 
 
 def test_the_rounds_start_over_after_a_leap():
     progress = Progress(3.0)
-    times_stuck(progress, [10.0] * 5)
-    assert not progress.stuck(5.0, 10.0 - 0.9 * LEAP)
+    times_stuck(progress, [0.0] * 5)
+    assert not progress.stuck(5.0, (0.9 * LEAP, 0.0), towards(50.0))
     assert progress.rounds == 1
-    assert not progress.stuck(6.0, 10.0 - 1.1 * LEAP)
+    assert not progress.stuck(6.0, (1.1 * LEAP, 0.0), towards(50.0))
     assert progress.rounds == 0
 
 
-def test_a_new_path_is_compared_with_itself_and_keeps_the_rounds():
+def test_a_restart_keeps_the_rounds_and_a_reset_does_not():
     progress = Progress(3.0)
-    times_stuck(progress, [10.0] * 5)
+    times_stuck(progress, [0.0] * 5)
     progress.restart(5.0)
-    assert times_stuck(progress, [30.0, 29.0, 28.0, 28.0, 28.0], start=6.0) == []
+    assert times_stuck(progress, [0.0] * 3, start=6.0) == []
     assert progress.rounds == 1
     progress.reset()
     assert progress.rounds == 0
-    assert times_stuck(progress, [50.0] * 4, start=100.0) == []
+    assert times_stuck(progress, [0.0] * 4, start=100.0) == []

@@ -57,11 +57,11 @@ def certified_stop(scene, body, limits, state, command, period):
         pose, v, omega = driven(pose, v, omega, command[0], command[1], limits, 0.5 * period)
         length = 0.25 * (before_v + v) * period
         angle = 0.25 * (before_w + omega) * period
-        if not clear_along(scene.closed, body, scene.margin, start, before, length, angle):
+        if not clear_along(scene.closed, body, scene.kept, start, before, length, angle):
             return NO_STOP
     stop = max(abs(v) / limits.v_brake, abs(omega) / limits.omega_brake)
     if not clear_along(
-        scene.closed, body, scene.margin, start, pose, 0.5 * stop * v, 0.5 * stop * omega
+        scene.closed, body, scene.kept, start, pose, 0.5 * stop * v, 0.5 * stop * omega
     ):
         return NO_STOP
     return ADMISSIBLE

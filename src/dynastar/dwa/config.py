@@ -12,7 +12,7 @@ class Weights(NamedTuple):
     dist: Annotated[float, Field("beta: keeps clear of obstacles", "", 0.0, 100.0)] = 0.1
     vel: Annotated[float, Field("gamma: drives fast", "", 0.0, 100.0)] = 0.1
     simi: Annotated[float, Field("sigma: stays on the global path", "", 0.0, 100.0)] = 0.0
-    risk: Annotated[float, Field("rho: keeps away from moving obstacles", "", 0.0, 100.0)] = 10.0
+    risk: Annotated[float, Field("rho: keeps away from moving obstacles", "", 0.0, 100.0)] = 20.0
 
 
 class DwaConfig(NamedTuple):
@@ -29,5 +29,5 @@ class DwaConfig(NamedTuple):
     omega_samples: Annotated[int, Field("turning rates in the window", "", 2, 1000)] = 14
     comfort: Annotated[float, Field("more clearance is no better", "m", 0.01, 10.0)] = 0.25
     hysteresis: Annotated[float, Field("what a change of mind has to be worth", "", 0.0, 10.0)] = (
-        0.05
+        0.02
     )

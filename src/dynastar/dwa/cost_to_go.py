@@ -205,24 +205,50 @@ def value_at(ahead, x, y):
 
 
 @njit(cache=True)
-def descent(ahead, x, y):
-    """Direction (rad) in which the cost-to-go falls most steeply at a point."""
-    h = ahead.resolution
-    gx = value_at(ahead, x + h, y) - value_at(ahead, x - h, y)
-    gy = value_at(ahead, x, y + h) - value_at(ahead, x, y - h)
-    return math.atan2(-gy, -gx)
+def descent(ahead, r, c):
+    """Unit vector in which the cost-to-go falls most steeply at a cell, (0, 0) where it is least.
+
+    Differences are taken to the lower neighbour of each axis, as the marching did, so that walls
+    have no part in them.
+    """
+    values = ahead.value if ahead.value[r, c] < np.inf else ahead.filled
+    rows, columns = values.shape
+    here = values[r, c]
+    west = values[r, c - 1] if c > 0 else np.inf
+    east = values[r, c + 1] if c < columns - 1 else np.inf
+    south = values[r - 1, c] if r > 0 else np.inf
+    north = values[r + 1, c] if r < rows - 1 else np.inf
+    gx = max(0.0, here - min(west, east)) * (1.0 if east < west else -1.0)
+    gy = max(0.0, here - min(south, north)) * (1.0 if north < south else -1.0)
+    steep = math.hypot(gx, gy)
+    if not 0.0 < steep < np.inf:
+        return 0.0, 0.0
+    return gx / steep, gy / steep
 
 
 @njit(cache=True)
-def bearing_at(ahead, x, y):
-    """``descent`` at the centre of the cell under a point, worked out when it is first asked for."""
-    rows, columns = ahead.bearing.shape
-    c = min(max(int((x - ahead.x0) / ahead.resolution), 0), columns - 1)
-    r = min(max(int((y - ahead.y0) / ahead.resolution), 0), rows - 1)
-    if math.isnan(ahead.bearing[r, c]):
-        cx, cy = ahead.x0 + (c + 0.5) * ahead.resolution, ahead.y0 + (r + 0.5) * ahead.resolution
-        ahead.bearing[r, c] = descent(ahead, cx, cy)
-    return ahead.bearing[r, c]
+def direction_at(ahead, x, y):
+    """``descent`` at a point, bilinear between cells where it is known; each is worked out once."""
+    rows, columns = ahead.value.shape
+    fx = (x - ahead.x0) / ahead.resolution - 0.5
+    fy = (y - ahead.y0) / ahead.resolution - 0.5
+    fx, fy = min(max(fx, 0.0), columns - 1.001), min(max(fy, 0.0), rows - 1.001)
+    c, r = int(fx), int(fy)
+    a, b = fx - c, fy - r
+    ux = uy = weight = 0.0
+    for i in range(2):
+        for j in range(2):
+            if ahead.value[r + i, c + j] < np.inf:
+                cell = ahead.slope[r + i, c + j]
+                if math.isnan(cell[0]):
+                    cell[0], cell[1] = descent(ahead, r + i, c + j)
+                w = (b if i else 1.0 - b) * (a if j else 1.0 - a)
+                ux += w * cell[0]
+                uy += w * cell[1]
+                weight += w
+    if weight > 0.05:
+        return ux, uy
+    return descent(ahead, r + (b > 0.5), c + (a > 0.5))
 
 
 @njit(cache=True)
@@ -231,12 +257,11 @@ def trace(ahead, x, y, line):
     h = ahead.resolution
     for k in range(len(line)):
         line[k, 0], line[k, 1] = x, y
-        gx = value_at(ahead, x + h, y) - value_at(ahead, x - h, y)
-        gy = value_at(ahead, x, y + h) - value_at(ahead, x, y - h)
-        steep = math.hypot(gx, gy)
+        ux, uy = direction_at(ahead, x, y)
+        steep = math.hypot(ux, uy)
         if steep < 1e-9 or value_at(ahead, x, y) < 2.0 * h:
             return k + 1
-        x, y = x - h * gx / steep, y - h * gy / steep
+        x, y = x + h * ux / steep, y + h * uy / steep
     return len(line)
 
 

@@ -9,14 +9,13 @@ import numpy.typing as npt
 
 from dynastar.dwa import admissible
 from dynastar.dwa.config import DwaConfig
-from dynastar.dwa.scene import Scene
-from dynastar.dwa.search import search
+from dynastar.dwa.scene import AT_REST, Manoeuvre, Scene
+from dynastar.dwa.search import LOOKS, search
 from dynastar.dwa.window import dynamic_window, sample_window
 from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import Robot
 
 LONG_TIME = 1.5  # s that a sample is held for at the longest
-VALUE_TIME = 2.0  # s after which progress is taken
 
 Floats = npt.NDArray[np.float64]
 TERMS = ("heading", "dist", "vel", "simi", "risk")
@@ -39,15 +38,13 @@ class Body(NamedTuple):
 class Span(NamedTuple):
     """How long samples are held and looked ahead, in steps of ``step`` seconds.
 
-    Held for ``steps`` or ``long_steps``, progress taken after ``value_steps``, risk looked for up to
-    ``horizon_steps`` with a disc of ``risk_radius`` (m). ``comfort`` (m) and ``hysteresis`` as in
-    ``DwaConfig``.
+    Held for ``steps`` or ``long_steps``, rolled out for ``horizon_steps``; risk is that of a disc of
+    ``risk_radius`` (m). ``comfort`` (m) and ``hysteresis`` as in ``DwaConfig``.
     """
 
     step: float
     steps: int
     long_steps: int
-    value_steps: int
     horizon_steps: int
     comfort: float
     hysteresis: float
@@ -67,7 +64,7 @@ def body_of(robot: Robot) -> Body:
 
 @dataclass(frozen=True)
 class Choice:
-    """What a tick considered: the command, the sample behind it, terms, refusals and scores.
+    """What a tick considered: the command, the manoeuvre behind it and what is left of that.
 
     ``samples`` (n, 2), ``refused`` (n,) codes (0 admissible), ``terms`` (n, 5) and ``score`` (n,) are
     copies; samples that were dropped early score -inf. ``limited_by`` says what kept it from being
@@ -75,7 +72,8 @@ class Choice:
     """
 
     command: Twist | None
-    sample: Twist | None
+    manoeuvre: Manoeuvre | None
+    left: Manoeuvre
     refusals: dict[str, int]
     samples: Floats
     refused: npt.NDArray[np.int64]
@@ -91,42 +89,38 @@ class DynamicWindow:
         self.robot, self.config, self.period = robot, config, period
         limits = robot.limits
         self.body = body_of(robot)
-        arc_time = max(config.arc_time, 0.5 * limits.v_max / limits.v_brake)
-        step = min(config.step, arc_time / 4)
-        steps = max(4, round(arc_time / step))
-        value_steps = max(round(VALUE_TIME / step), steps)
-        horizon_steps = max(value_steps, round(config.horizon / step))
+        step = min(config.step, config.arc_time / 4)
+        steps = max(4, round(config.arc_time / step))
+        far = config.horizon + 0.5 * limits.v_max / limits.v_brake
         self.span = Span(
             step,
             steps,
             max(round(LONG_TIME / step), steps),
-            value_steps,
-            horizon_steps + (horizon_steps - value_steps) % 2,
+            LOOKS * max(2, round(far / step / LOOKS)),
             config.comfort,
             config.hysteresis,
             0.5 * (robot.footprint.inscribed + robot.footprint.circumscribed),
         )
         n_v, n_omega = config.v_samples, config.omega_samples
-        n = (n_v + 3) * (n_omega + 3) + 1
+        n = (n_v + 3) * (n_omega + 3) + 2
         self._speeds, self._rates = np.empty(n_v + 3), np.empty(n_omega + 3)
         self._reach = max(period, config.reach)
         self._buffers = (
             np.empty((n, 2)),
             np.empty((n, 2)),
+            np.zeros(n),
+            np.zeros(n, np.int64),
             np.zeros((n, 5)),
             np.zeros(n, np.int64),
             np.empty(n),
         )
         self._weights = tuple(map(float, config.weights))
 
-    def choose(self, pose: Pose2D, twist: Twist, scene: Scene, v_cap: float) -> Choice:
+    def choose(self, pose: Pose2D, twist: Twist, scene: Scene) -> Choice:
         """The best admissible command from ``pose`` and ``twist``."""
         config, limits = self.config, self.robot.limits
-        window = dynamic_window(*twist, limits, float(min(v_cap, limits.v_max)), self._reach)
-        last_v = min(max(scene.last_v, window[0]), window[1])
-        last_omega = min(max(scene.last_omega, window[2]), window[3])
-        scene = scene._replace(last_v=last_v, last_omega=last_omega)
-        samples, commands, terms, refused, score = self._buffers
+        window = dynamic_window(*twist, limits, min(scene.v_cap, limits.v_max), self._reach)
+        samples, commands, holds, tails, terms, refused, score = self._buffers
         n = sample_window(
             window, self._speeds, self._rates, config.v_samples, config.omega_samples, samples
         )
@@ -134,34 +128,43 @@ class DynamicWindow:
         best = search(
             scene, self.body, limits, self.span, self._weights, state, n, self._buffers, self.period
         )
-        n += 1
+        n += 2
         refused = refused[:n].copy()
         counts = np.bincount(refused, minlength=max(REFUSALS) + 1)
         command = Twist(*commands[best].tolist()) if best >= 0 else None
-        sample = Twist(*samples[best].tolist()) if best >= 0 else None
+        left, chosen = AT_REST, None
+        if best >= 0:
+            v, omega = samples[best].tolist()
+            chosen = Manoeuvre(v, omega, float(holds[best]), int(tails[best]))
+            left = chosen._replace(hold=chosen.hold - self.period)
         return Choice(
             command,
-            sample,
+            chosen,
+            left,
             {words: int(counts[code]) for code, words in REFUSALS.items()},
             samples[:n].copy(),
             refused,
             terms[:n].copy(),
             score[:n].copy(),
-            self._limit(sample, samples[:n], refused, v_cap),
+            self._limit(chosen, samples[:n], refused, scene.v_cap),
         )
 
     def _limit(
-        self, sample: Twist | None, samples: Floats, refused: npt.NDArray[np.int64], v_cap: float
+        self,
+        chosen: Manoeuvre | None,
+        samples: Floats,
+        refused: npt.NDArray[np.int64],
+        v_cap: float,
     ) -> str:
         """What kept a choice from being faster, in words, or "" at full speed."""
         limits = self.robot.limits
-        if sample is None:
+        if chosen is None:
             return "no admissible command"
-        if sample.v >= 0.95 * limits.v_max:
+        if chosen.v >= 0.95 * limits.v_max:
             return ""
-        if sample.v >= 0.95 * v_cap:
+        if chosen.v >= 0.95 * v_cap:
             return "speed limit"
-        codes = refused[samples[:, 0] > sample.v + 1e-6]
+        codes = refused[samples[:, 0] > chosen.v + 1e-6]
         if len(codes) == 0:
             return "acceleration"
         most = int(np.bincount(codes).argmax())

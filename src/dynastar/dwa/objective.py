@@ -17,9 +17,9 @@ def heading(theta, bearing):
 
 
 @njit(cache=True)
-def progress(before, after, scale):
-    """Decrease of the cost-to-go over a trajectory, over the most it could be (``scale``, m)."""
-    return (before - after) / scale
+def progress(gained, scale):
+    """Decrease of the cost-to-go over a trajectory (m), over the most it could be (``scale``, m)."""
+    return gained / scale
 
 
 @njit(cache=True)

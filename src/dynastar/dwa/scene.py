@@ -21,21 +21,36 @@ class DistanceField(NamedTuple):
 
 
 class CostToGo(NamedTuple):
-    """The cost-to-go (m) over the local map, see ``cost_to_go``."""
+    """The cost-to-go (m) over the local map, and where it falls, see ``cost_to_go``."""
 
     value: Floats
     filled: Floats
-    bearing: Floats
+    slope: Floats
     x0: float
     y0: float
     resolution: float
+
+
+class Manoeuvre(NamedTuple):
+    """Speeds to ask for (m/s, rad/s), for how long (s), and the tail that comes then."""
+
+    v: float
+    omega: float
+    hold: float
+    tail: int
+
+
+FOLLOW, STOP, BACK = range(3)
+AT_REST = Manoeuvre(0.0, 0.0, 0.0, STOP)
 
 
 class Scene(NamedTuple):
     """What a window is judged against.
 
     ``closed`` are distances to what is not observed free, ``obstacles`` to what is occupied.
-    ``margin`` (m) is kept from both; ``ahead`` (s) is when a command given now acts.
+    ``margin`` (m) is kept from both, ``kept`` from the former where the robot stands nearer than
+    that. ``ahead`` (s) is when a command given now acts, ``last`` what is left of the manoeuvre that
+    was chosen last, ``v_cap`` (m/s) the speed limit.
     """
 
     closed: DistanceField
@@ -44,6 +59,7 @@ class Scene(NamedTuple):
     people: People
     hidden: Hidden
     margin: float
+    kept: float
     ahead: float
-    last_v: float
-    last_omega: float
+    last: Manoeuvre
+    v_cap: float

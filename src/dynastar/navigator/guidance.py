@@ -33,8 +33,7 @@ NEAR = 6  # cells to the nearest one where the robot fits, at most
 class Guidance:
     """Keeps the cost-to-go of the present path; its arrays are made once.
 
-    ``reachable`` tells whether a way leads from the robot to where the path leaves the local map,
-    ``value`` (m) is the cost-to-go where the robot stands.
+    ``reachable`` tells whether a way leads from the robot to where the path leaves the local map.
     """
 
     def __init__(self, cells: int, resolution: float, margin: float, comfort: float) -> None:
@@ -42,15 +41,20 @@ class Guidance:
         self.spacing = resolution * FACTOR
         self._margin, self._comfort = margin, comfort
         self._cost, self._filled = np.empty((n, n)), np.empty((n, n))
-        self._value, self._bearing = np.full((n, n), np.inf), np.empty((n, n))
+        self._value, self._slope = np.full((n, n), np.inf), np.empty((n, n, 2))
         self._keys, self._nodes = np.empty(4 * n * n), np.empty(4 * n * n, np.int64)
         self._line, self._count = np.empty((LINE, 2)), 0
-        self.reachable, self.value = False, math.inf
+        self.reachable = False
+        self._field: CostToGo | None = None
 
     @property
     def line(self) -> Floats:
         """Points (n, 2), ``spacing`` metres apart, along the descent from the robot."""
         return self._line[: self._count]
+
+    def cost_to_go(self, x: float, y: float) -> float:
+        """Metres left to the goal from a point, by the last update; inf before the first."""
+        return math.inf if self._field is None else float(value_at(self._field, x, y))
 
     def update(
         self,
@@ -87,9 +91,9 @@ class Guidance:
         )  # fmt: skip
         self.reachable = bool(np.isfinite(self._value[stop]))
         extend(self._cost, self._value, a, self._filled)
-        self._bearing[:] = np.nan
-        cost_to_go = CostToGo(self._value, self._filled, self._bearing, x0, y0, a)
-        self.value = float(value_at(cost_to_go, *robot))
+        self._slope[:] = np.nan
+        cost_to_go = CostToGo(self._value, self._filled, self._slope, x0, y0, a)
+        self._field = cost_to_go
         self._count = trace(cost_to_go, *robot, self._line)
         return DistanceField(obstacles, x0, y0, resolution), cost_to_go
 

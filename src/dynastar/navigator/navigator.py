@@ -7,12 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from dynastar.dwa.clearance import kept_margin
 from dynastar.dwa.dwa import Choice, DynamicWindow
-from dynastar.dwa.scene import DistanceField, Scene
+from dynastar.dwa.scene import AT_REST, DistanceField, Scene
 from dynastar.errors import GoalOccupied, NoPath, PlanningError
 from dynastar.geometry import Goal, Pose2D, Twist, wrap_angle
 from dynastar.grid import OccupancyGrid
-from dynastar.navigator.braking import REST, Commands
+from dynastar.navigator.braking import Commands
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.guidance import Guidance
 from dynastar.navigator.planning_map import PlanningMap
@@ -68,7 +69,7 @@ class Navigator:
         self._goals: list[Goal] = []
         self._path: Path | None = None
         self._s = 0.0
-        self._last = REST
+        self._last = AT_REST
         self._planned_at = -math.inf
         self._no_path_since: float | None = None
         self._forgotten = 0
@@ -213,10 +214,11 @@ class Navigator:
         if goal.heading is not None and self._near(goal, pose):
             command = self._turned(pose, twist, goal.heading)
             self._say("turning", "to the goal's heading", choice=None)
+            self._last = AT_REST
             admitted = self.window.admits(pose, twist, scene, command)
             return self._commands.send(state, command if admitted else None)
-        choice = self.window.choose(pose, twist, scene, self._speed_cap(pose))
-        self._last = choice.sample or REST
+        choice = self.window.choose(pose, twist, scene)
+        self._last = choice.left
         self._judge(state, choice, len(scene.people.now) > 0)
         return self._commands.send(state, choice.command)
 
@@ -237,21 +239,26 @@ class Navigator:
         hidden = self.sensing.unseen(occupied, state.stamp)
         stop = state.twist.v**2 / (2.0 * limits.v_brake)
         stop += abs(state.twist.v) * (config.latency + 2.0 * config.period)
+        closed = DistanceField(local.field, *local.origin, local.config.resolution)
+        margin = self.margin + config.heading_error * stop
+        stands = (pose.x, pose.y, math.cos(pose.theta), math.sin(pose.theta))
         return Scene(
-            DistanceField(local.field, *local.origin, local.config.resolution),
+            closed,
             obstacles,
             cost_to_go,
             people,
             hidden,
-            self.margin + config.heading_error * stop,
+            margin,
+            kept_margin(closed, self.window.body, margin, stands),
             config.latency,
-            *map(float, self._last),
+            self._last,
+            self._speed_cap(pose),
         )
 
     def _speed_cap(self, pose: Pose2D) -> float:
         """The speed (m/s) that leaves room to slow down for the map's speed limits ahead."""
         line = self.guidance.line
-        ahead = np.arange(len(line)) * self.guidance.spacing
+        ahead = np.maximum(np.arange(len(line)) - 1.0, 0.0) * self.guidance.spacing
         limit = self.planning_map.speed_limit(np.vstack([[pose.x, pose.y], line]))
         brake = 2.0 * GENTLE * self.robot.limits.v_brake
         slowed = np.sqrt(limit[1:] ** 2 + brake * ahead)
@@ -267,7 +274,8 @@ class Navigator:
             choice=choice,
             limited_by=choice.limited_by,
         )
-        if not self.progress.stuck(state.stamp, self.guidance.value):
+        here = (state.pose.x, state.pose.y)
+        if not self.progress.stuck(state.stamp, here, self.guidance.cost_to_go):
             return
         if self.progress.rounds > self.config.attempts:
             self._say("blocked", "no progress, whatever was tried")

@@ -1,13 +1,21 @@
-"""Whether the robot gets on: the cost-to-go has to fall."""
+"""Whether the robot gets on: it has to come to where the cost-to-go is lower."""
 
 import math
+from collections.abc import Callable
 
-STEP = 0.1  # m by which the cost-to-go has to fall to count
-LEAP = 1.0  # m by which it has to fall for the rounds of recovery to start over
+STEP = 0.1  # m by which the cost-to-go has to be lower to count
+LEAP = 1.0  # m by which it has to be lower for the rounds of recovery to start over
+
+Point = tuple[float, float]
+CostToGoAt = Callable[[float, float], float]
 
 
 class Progress:
-    """Remembers the smallest cost-to-go, when it was reached, and the rounds of recovery since."""
+    """Remembers where the robot last got on, when that was, and the rounds of recovery since.
+
+    Places are compared by the cost-to-go of the moment, because it rises and falls everywhere with
+    a new path or a moving obstacle.
+    """
 
     def __init__(self, patience: float) -> None:
         self.patience = patience  # s
@@ -16,23 +24,26 @@ class Progress:
     def reset(self) -> None:
         """A new goal: nothing has been reached yet."""
         self.rounds = 0
-        self._least = self._best = math.inf
-        self._since: float | None = None
+        self._stuck_at: Point | None = None
+        self.restart(-math.inf)
 
     def restart(self, now: float) -> None:
-        """A new path: what it costs is compared with itself only."""
-        self._best, self._since = math.inf, now
+        """Counts from ``now`` on (s), wherever the robot is."""
+        self._anchor: Point | None = None
+        self._since = now
 
-    def stuck(self, now: float, value: float) -> bool:
-        """Takes in the cost-to-go (m) at ``now`` (s); whether it has not fallen for too long."""
-        if value < self._best - STEP:
-            self._best, self._since = value, now
-        if value < self._least - LEAP:
-            self._least, self.rounds = value, 0
-        if self._since is None:
-            self._since = now
+    def stuck(self, now: float, here: Point, cost_to_go: CostToGoAt) -> bool:
+        """Whether the robot, ``here`` (m) at ``now`` (s), has not got on for longer than its patience."""
+        value = cost_to_go(*here)
+        if self._stuck_at is not None and cost_to_go(*self._stuck_at) - value > LEAP:
+            self._stuck_at, self.rounds = None, 0
+        if self._anchor is None or cost_to_go(*self._anchor) - value > STEP:
+            if self._anchor is not None or self._since == -math.inf:
+                self._since = now
+            self._anchor = here
         if now - self._since <= self.patience:
             return False
         self.rounds += 1
+        self._stuck_at = self._stuck_at or here
         self.restart(now)
         return True
