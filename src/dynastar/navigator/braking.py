@@ -53,12 +53,20 @@ def _lead(current: float, mean: float, brake: float, period: float) -> float:
     return slew(current, current - math.copysign(drop, current), brake, brake, period)
 
 
+def _lesser(measured: float, commanded: float) -> float:
+    """The speed of smaller magnitude, 0 where the two are of opposite sign."""
+    if measured * commanded <= 0.0:
+        return 0.0
+    return min(measured, commanded, key=abs)
+
+
 class Commands:
     """What was sent: where that takes the robot until a new command acts, and the stop behind it."""
 
     def __init__(self, limits: Limits, period: float, latency: float) -> None:
         self.limits, self.period, self.latency = limits, period, latency
         self._sent: list[tuple[float, Twist]] = []
+        self._last = REST
         self._stop = StopProfile(REST, limits)
 
     def when_one_acts(self, state: RobotState) -> tuple[Pose2D, Twist]:
@@ -88,18 +96,23 @@ class Commands:
         return command
 
     def brake(self, state: RobotState) -> Twist:
-        """Carries the last certified stop on."""
+        """Carries the last certified stop on, from no more than was commanded last.
+
+        So it ends though the state is frozen or not finite, or the odometry reads high.
+        """
         finite = all(math.isfinite(number) for number in (state.stamp, *state.pose, *state.twist))
+        twist = self._last
         if finite:
-            twist = self.when_one_acts(state)[1]
-        else:
-            twist = self._sent[-1][1] if self._sent else REST
+            v, omega = self.when_one_acts(state)[1]
+            twist = Twist(_lesser(v, self._last.v), _lesser(omega, self._last.omega))
         command = self._stop.next(twist, self.period)
-        if finite:
-            self._note(state.stamp, command)
+        self._note(state.stamp, command)
         return command
 
     def _note(self, now: float, command: Twist) -> None:
+        self._last = command
+        if not math.isfinite(now):
+            return
         self._sent.append((now, command))
         while len(self._sent) > 1 and self._sent[1][0] + self.latency <= now:
             self._sent.pop(0)

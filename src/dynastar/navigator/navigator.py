@@ -35,6 +35,7 @@ BETTER = 0.9  # of what is left of a path, up to which a new one replaces it
 NO_PATH_TIME = 2.0  # s without any path until what was sensed is forgotten
 FORGET_LIMIT = 2  # times that it is forgotten for want of a path
 GENTLE = 0.7  # of the braking that slowing down for a speed limit or a heading uses
+POSSIBLE = 1.1  # of a speed limit that odometry may report
 PLAN_MARGIN = 0.03  # m beyond the footprint that a plan keeps clear
 
 
@@ -106,6 +107,7 @@ class Navigator:
     ) -> Twist:
         """The twist to drive from now on; ``movers`` replaces what the tracker finds in the scans."""
         scans = [] if scan is None else [scan] if isinstance(scan, LaserScan) else list(scan)
+        state = self._within_limits(state)
         fault = self.sensing.place(state)
         if fault is None:
             fault = self.sensing.take_in(scans, state.stamp, self.planning_map.known)
@@ -130,6 +132,16 @@ class Navigator:
         if not self._plan(state, changed):
             return self._commands.brake(state)
         return self._drive(state, movers)
+
+    def _within_limits(self, state: RobotState) -> RobotState:
+        """The state without speeds that the robot cannot have, as a glitch of the odometry reports."""
+        v, omega = state.twist
+        if not (math.isfinite(v) and math.isfinite(omega)):
+            return state
+        limits = self.robot.limits
+        v = min(max(v, POSSIBLE * limits.v_min), POSSIBLE * limits.v_max)
+        most = POSSIBLE * limits.omega_max
+        return state._replace(twist=Twist(v, min(max(omega, -most), most)))
 
     def _start_over(self) -> None:
         """Forgets the path and the attempts to reach the last goal."""

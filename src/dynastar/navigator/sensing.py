@@ -18,6 +18,7 @@ from dynastar.robot import Robot
 from dynastar.scan import LaserScan
 
 SEEN_NOW = 0.15  # s that a cell counts as in view after it was seen
+SAME_PLACE = 0.05  # m within which a robot may get the same ranges again
 HISTORY = 2.0  # s of poses kept to place scans by
 
 
@@ -30,6 +31,7 @@ class Sensing:
         self._poses: deque[RobotState] = deque()
         self._beams: dict[Pose2D, int] = {}
         self._seen: dict[Pose2D, float] = {}  # the newest stamp of each sensor
+        self._taken: dict[Pose2D, tuple[npt.NDArray[np.floating], Pose2D]] = {}
         self._fresh = True
         self._jumped_to: Pose2D | None = None
         self.hidden = HiddenSpace(
@@ -82,11 +84,14 @@ class Sensing:
 
     def take_in(self, scans: Sequence[LaserScan], now: float, known: Known) -> str | None:
         """Takes in the scans that are new; what makes the data unusable, in words, or None."""
-        fault = None
+        fault, ahead = None, 0.0
         for scan in scans:
             wrong = scan.fault(self._beams.get(scan.mount))
             if wrong is None and scan.stamp > now + 0.5 * self.config.period:
                 wrong = f"the scan is {scan.stamp - now:.3f} s ahead of the robot's state"
+                ahead = max(ahead, scan.stamp - now)
+            if wrong is None:
+                wrong = self._without_news(scan)
             if wrong is not None:
                 fault = wrong
             elif scan.stamp > self._seen.get(scan.mount, -math.inf):
@@ -94,6 +99,8 @@ class Sensing:
         age = now - self.last_scan
         if age > self.config.scan_age:
             fault = fault or "no scan" + (f" for {age:.1f} s" if math.isfinite(age) else " yet")
+        elif ahead > self.config.scan_age:
+            fault = f"the robot's state is {ahead:.1f} s older than the scan"
         else:
             fault = None
         here = self._poses[-1].pose
@@ -122,6 +129,21 @@ class Sensing:
         local = self.local_map
         seen = local.free_at >= now - SEEN_NOW
         return self.hidden.update((local.row0, local.column0), seen, occupied, now)
+
+    def _without_news(self, scan: LaserScan) -> str | None:
+        """Why a scan tells nothing, in words: no valid range, or the last one again while moving."""
+        ranges = np.asarray(scan.ranges)
+        if np.isnan(ranges).all():
+            return "the scan has no valid range"
+        here = self._poses[-1].pose
+        last, there = self._taken.get(scan.mount, (None, here))
+        if last is None or not np.array_equal(ranges, last, equal_nan=True):
+            self._taken[scan.mount] = (ranges.copy(), here)
+            return None
+        moved = math.hypot(here.x - there.x, here.y - there.y) > SAME_PLACE
+        if moved and np.isfinite(ranges).any():
+            return "the scan repeats the last one, though the robot has moved"
+        return None
 
     def _see(self, scan: LaserScan, known: Known) -> None:
         self._beams.setdefault(scan.mount, len(scan.ranges))
