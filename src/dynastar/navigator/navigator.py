@@ -35,7 +35,6 @@ BETTER = 0.9  # of what is left of a path, up to which a new one replaces it
 NO_PATH_TIME = 2.0  # s without any path until what was sensed is forgotten
 FORGET_LIMIT = 2  # times that it is forgotten for want of a path
 GENTLE = 0.7  # of the braking that slowing down for a speed limit or a heading uses
-POSSIBLE = 1.1  # of a speed limit that odometry may report
 PLAN_MARGIN = 0.03  # m beyond the footprint that a plan keeps clear
 
 
@@ -139,9 +138,9 @@ class Navigator:
         if not (math.isfinite(v) and math.isfinite(omega)):
             return state
         limits = self.robot.limits
-        v = min(max(v, POSSIBLE * limits.v_min), POSSIBLE * limits.v_max)
-        most = POSSIBLE * limits.omega_max
-        return state._replace(twist=Twist(v, min(max(omega, -most), most)))
+        v = min(max(v, limits.v_min), limits.v_max)
+        omega = min(max(omega, -limits.omega_max), limits.omega_max)
+        return state._replace(twist=Twist(v, omega))
 
     def _start_over(self) -> None:
         """Forgets the path and the attempts to reach the last goal."""

@@ -1,4 +1,4 @@
-"""The chart that global plans are made on: the map, finer if need be, and what was seen since."""
+"""The map that global plans are made on: the map, finer if need be, and what was seen since."""
 
 import math
 
@@ -52,7 +52,7 @@ class PlanningMap:
         return (self.prior & ~self.cleared) | self.seen
 
     def take_in(self, layer: LocalMap) -> bool:
-        """Marks what the layer shows occupied and clears what it shows free; whether that changed."""
+        """Marks what the local map shows occupied and clears what it shows free; whether that changed."""
         low, high, under = self._window(layer)
         top, bottom, left, right = take_over(
             layer.states, under, low, high,
@@ -64,7 +64,7 @@ class PlanningMap:
         return True
 
     def blocked_under(self, layer: LocalMap) -> Mask:
-        """Whether something stands under each of a layer's cells; off the chart it does."""
+        """Whether something stands under each of a local map's cells; off the planning map it does."""
         under = self._window(layer)[2]
         blocked = np.empty(under.shape, np.bool_)
         stands_under(under, self.prior, self.seen, self.cleared, blocked)
@@ -117,7 +117,7 @@ class PlanningMap:
         return limits
 
     def _window(self, layer: LocalMap) -> Window:
-        """The chart's cells [low, high) under a layer, and the index of the one under each of its."""
+        """The chart's cells [low, high) under a local map, and the index of the one under each of its."""
         if self._under is not None and self._under[0] == layer.origin:
             return self._under[1]
         window = cells_under(

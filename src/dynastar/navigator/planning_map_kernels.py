@@ -1,4 +1,4 @@
-"""What the obstacle layer shows, taken over into the chart's cells that lie under it."""
+"""What the local map shows, taken over into the planning map's cells that lie under it."""
 
 import math
 
@@ -7,15 +7,15 @@ import numpy as np
 from dynastar.compiled import njit
 from dynastar.perception.local_map import SEEN_FREE, SEEN_OCCUPIED, UNSEEN
 
-OFF = -1  # the index of what lies off the chart
+OFF = -1  # the index of what lies off the planning map
 
 
 @njit(cache=True)
 def cells_under(n, resolution, x0, y0, frame_resolution, frame_x, frame_y, yaw, rows, columns):
-    """Which cell of the chart lies under each of a layer's, and the window [low, high) they are in.
+    """The planning map's cell under each of a local map's, and the window [low, high) they are in.
 
-    The layer has n x n cells and its low corner at (x0, y0); the frame is the chart's, of rows x
-    columns cells. The cell is an index (n, n) into the flattened chart, or ``OFF``.
+    The local map has n x n cells and its low corner at (x0, y0); the frame is the planning map's,
+    of rows x columns cells. A cell is an index (n, n) into the flattened planning map, or ``OFF``.
     """
     cos, sin = math.cos(yaw), math.sin(yaw)
     low, high = np.array((rows, columns), np.int64), np.zeros(2, np.int64)
@@ -38,7 +38,7 @@ def cells_under(n, resolution, x0, y0, frame_resolution, frame_x, frame_y, yaw, 
 def take_over(states, under, low, high, marks, known, unknown, seen, cleared):
     """Brings ``seen`` and ``cleared`` up to date; returns the window (row, end, column, end) that changed.
 
-    Seen is what a layer's ``states`` show occupied off the ``known`` obstacles, until they show it
+    Seen is what a local map's ``states`` show occupied off the ``known`` obstacles, until they show it
     free; cleared is what they show free of the ``unknown``. ``marks`` is room to work in.
     """
     marks[low[0] : high[0], low[1] : high[1]] = 0
@@ -70,7 +70,7 @@ def take_over(states, under, low, high, marks, known, unknown, seen, cleared):
 
 @njit(cache=True)
 def stands_under(under, prior, seen, cleared, blocked):
-    """Fills ``blocked`` (n, n): whether something stands under each of a layer's cells, or no chart."""
+    """Fills ``blocked`` (n, n): whether each of a local map's cells is occupied or off the map."""
     prior, seen, cleared = prior.reshape(-1), seen.reshape(-1), cleared.reshape(-1)
     for i in range(under.shape[0]):
         for j in range(under.shape[1]):

@@ -23,7 +23,7 @@ HISTORY = 2.0  # s of poses kept to place scans by
 
 
 class Sensing:
-    """The obstacle layer, the tracker, and the poses that scans are placed by."""
+    """The local map, the tracker, and the poses that scans are placed by."""
 
     def __init__(self, robot: Robot, config: NavigatorConfig) -> None:
         self.robot, self.config = robot, config
@@ -90,11 +90,12 @@ class Sensing:
             if wrong is None and scan.stamp > now + 0.5 * self.config.period:
                 wrong = f"the scan is {scan.stamp - now:.3f} s ahead of the robot's state"
                 ahead = max(ahead, scan.stamp - now)
-            if wrong is None:
+            newer = scan.stamp > self._seen.get(scan.mount, -math.inf)
+            if wrong is None and newer:
                 wrong = self._without_news(scan)
             if wrong is not None:
                 fault = wrong
-            elif scan.stamp > self._seen.get(scan.mount, -math.inf):
+            elif newer:
                 self._see(scan, known)
         age = now - self.last_scan
         if age > self.config.scan_age:

@@ -18,7 +18,7 @@ Points = npt.NDArray[np.float64]
 
 
 class LocalMapConfig(NamedTuple):
-    """The obstacle layer's settings."""
+    """The local map's settings."""
 
     resolution: Annotated[float, Field("side of a cell", "m", 0.01, 1.0)] = 0.05
     size: Annotated[float, Field("side of the window round the robot", "m", 2.0, 100.0)] = 10.0
