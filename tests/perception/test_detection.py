@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from dynastar.grid import GridFrame
 from dynastar.perception import detection as d
-from dynastar.perception.detection import FreeStamps, Known, Sensor
+from dynastar.perception.detection import Known, Sensor
+from dynastar.perception.past_scans import SeenFree
 
 STEP = 0.005
 HERE = Sensor(0.0, 0.0, STEP, 1257, 1)
@@ -32,12 +33,14 @@ def group_of(points, hidden_first=0.0, hidden_last=0.0):
     return group
 
 
-def space(free, resolution=0.05):
-    """Stamps of 12 x 12 m round the origin, 1 s where ``free(x, y)``."""
-    n = round(12.0 / resolution)
-    centres = -6.0 + (np.arange(n) + 0.5) * resolution
-    stamps = np.where(free(centres[None, :], centres[:, None]), 1.0, -np.inf)
-    return FreeStamps(np.ascontiguousarray(stamps), -6.0, -6.0, resolution, 0.0)
+def space(free):
+    """What a scan from the origin saw free: as far out as ``free(x, y)``, up to 6 m."""
+    angles = (np.arange(1257) + 0.5) * STEP
+    along = np.arange(0.0, 6.0, 0.01)
+    shown = free(np.cos(angles)[:, None] * along, np.sin(angles)[:, None] * along)
+    ranges = along[np.where(shown.all(axis=1), -1, np.argmin(shown, axis=1))]
+    views = np.array([[0.0, 0.0, 0.0, 0.0, STEP, 1257.0]])
+    return SeenFree(ranges[None, :], views, np.array([1.0]), 0.0)
 
 
 def everywhere(x, y):
@@ -129,7 +132,7 @@ def test_points_at_what_the_map_shows_are_in_no_group():
 
 
 def test_free_space_is_what_lies_behind_a_point():
-    """A wall is not in free space, though the cells that its surface crosses may be."""
+    """A wall is not in free space, though noise may have let a beam pass its surface."""
     y = np.linspace(-0.4, 0.4, 60)
     wall = np.column_stack([np.full(60, 2.02), y])
     (group,) = groups_of(wall, free=lambda x, y: (x < 2.05) & (y == y))[1]

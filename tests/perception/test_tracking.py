@@ -85,6 +85,16 @@ def test_a_walker_who_enters_free_space_is_confirmed_in_a_third_of_a_second(spee
     assert k / 20 < seen + 0.35
 
 
+@pytest.mark.parametrize("distance", [7.0, 10.0])
+def test_a_walker_is_tracked_as_far_as_the_lidar_sees(distance):
+    """The local map ends at 5 m."""
+    watcher = Watcher(lidar=Lidar(720, math.tau, 0.05, 15.0))
+    watcher.watch(lambda t: [(distance, -0.6 + 1.2 * t, 0.3)], 1.0)
+    (mover,) = watcher.movers
+    assert (mover.x, mover.y) == pytest.approx((distance, 0.6), abs=0.1)
+    assert mover.vy == pytest.approx(1.2, abs=0.2)
+
+
 @pytest.mark.parametrize("distance", [0.8, 1.0, 2.0, 4.0])
 def test_a_walker_is_where_it_is_though_less_than_half_is_seen_from_near_by(distance):
     watcher = Watcher()

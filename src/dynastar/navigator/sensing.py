@@ -27,7 +27,8 @@ class Sensing:
 
     def __init__(self, robot: Robot, config: NavigatorConfig) -> None:
         self.robot, self.config = robot, config
-        self.local_map, self.tracker = LocalMap(config.local_map), Tracker(config.tracker)
+        self.local_map = LocalMap(config.local_map)
+        self.tracker = Tracker(config.tracker, config.range_error, config.heading_error)
         self._poses: deque[RobotState] = deque()
         self._beams: dict[Pose2D, int] = {}
         self._seen: dict[Pose2D, float] = {}  # the newest stamp of each sensor

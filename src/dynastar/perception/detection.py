@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from dynastar.compiled import njit
 from dynastar.grid import GridFrame
+from dynastar.perception.past_scans import SeenFree, seen_free
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
@@ -23,7 +24,7 @@ GROUP_COLUMNS = 9
 D_X, D_Y, D_RADIUS, D_MARGIN, D_MEASURED = range(5)
 MAPPED, NOBODY = -2, -1  # owners of points besides the tracks: the static map, and none
 ADJACENT = 3  # beams apart, up to which two points are neighbours
-BEHIND = (0.75, 1.5)  # cells behind a point that have to have been seen free
+BEHIND = 0.05  # m behind a point that has to have been seen free
 FEWEST = 3  # points of a group
 TYPICAL_RADIUS = 0.3  # m, assumed until both ends were in view
 
@@ -46,25 +47,6 @@ class Sensor(NamedTuple):
     step: float
     beams: int
     full: int
-
-
-class FreeStamps(NamedTuple):
-    """When each cell of the local map was last seen free (s), and since when that counts (s)."""
-
-    free_at: Floats
-    x: float
-    y: float
-    resolution: float
-    since: float
-
-
-@njit(cache=True)
-def seen_free(x: float, y: float, space: FreeStamps) -> bool:
-    """Whether the cell at (x, y) has been seen free since ``space.since``."""
-    row = int(math.floor((y - space.y) / space.resolution))
-    column = int(math.floor((x - space.x) / space.resolution))
-    inside = 0 <= row < space.free_at.shape[0] and 0 <= column < space.free_at.shape[1]
-    return inside and space.free_at[row, column] > space.since
 
 
 @njit(cache=True)
@@ -119,7 +101,7 @@ def fit_disc(
 
 @njit(cache=True)
 def find_owners(
-    points: Floats, sensor: Sensor, known: Known, space: FreeStamps, discs: Floats
+    points: Floats, sensor: Sensor, known: Known, space: SeenFree, discs: Floats
 ) -> tuple[Integers, Mask]:
     """What each point (n,) belongs to, and whether it lies in space that was seen free.
 
@@ -140,10 +122,8 @@ def find_owners(
             owner[i] = MAPPED
             continue
         dx, dy = x - sensor.x, y - sensor.y
-        cell = space.resolution / max(math.hypot(dx, dy), 1e-9)
-        free[i] = True
-        for depth in BEHIND:
-            free[i] &= seen_free(x + depth * cell * dx, y + depth * cell * dy, space)
+        behind = BEHIND / max(math.hypot(dx, dy), 1e-9)
+        free[i] = seen_free(x + behind * dx, y + behind * dy, space)
         nearest = 1.0  # squared distance over squared reach
         for t in range(len(discs)):
             dx, dy = x - discs[t, D_X], y - discs[t, D_Y]

@@ -1,4 +1,4 @@
-"""Kernels of the obstacle layer: what a scan frees and what it marks."""
+"""Kernels of the local map: what a scan frees and what it marks."""
 
 import math
 

@@ -11,8 +11,9 @@ from dynastar.geometry import Pose2D
 from dynastar.grid import GridFrame
 from dynastar.perception import detection
 from dynastar.perception import tracking_kernels as kernels
-from dynastar.perception.detection import FreeStamps, Known, Sensor
+from dynastar.perception.detection import Known, Sensor
 from dynastar.perception.local_map import LocalMap, Points
+from dynastar.perception.past_scans import PastScans
 from dynastar.scan import LaserScan
 
 TrackState = Literal["tentative", "confirmed", "stopped", "occluded"]
@@ -69,23 +70,30 @@ class Track(NamedTuple):
 
 
 class Tracker:
-    """Follows things from scan to scan and finds out which of them move.
+    """Follows things from scan to scan, within ``range_error`` (m), and finds out which of them move.
 
     ``tracks``, as of the last scan, are "tentative" (seen too short a time to tell), "confirmed"
     (moves), "stopped" (moved, and stands now) or "occluded" (moved, and is out of sight). What was
     only ever seen to stand is not among them.
     """
 
-    def __init__(self, config: TrackerConfig = TrackerConfig()) -> None:
+    def __init__(
+        self,
+        config: TrackerConfig = TrackerConfig(),
+        range_error: float = 0.0,
+        heading_error: float = 0.0,
+    ) -> None:
         self.config = TrackerConfig(*map(float, config))
         self._rows = np.zeros((0, kernels.COLUMNS))
         self._stamp = -math.inf
         self._next_id = 0
+        self._past = PastScans(range_error, heading_error)
         self.tracks: tuple[Track, ...] = ()
 
     def forget(self) -> None:
         """Drops all tracks."""
         self._rows = self._rows[:0]
+        self._past.forget()
         self.tracks = ()
 
     def update(
@@ -108,9 +116,7 @@ class Tracker:
         step = abs(scan.angle_increment)
         full = step * len(scan.ranges) > math.tau - 0.5 * step
         view = Sensor(float(sensor.x), float(sensor.y), step, len(scan.ranges), int(full))
-        x0, y0 = local_map.origin
-        a, memory = local_map.config.resolution, local_map.config.memory
-        before = FreeStamps(local_map.free_at, float(x0), float(y0), float(a), now - memory)
+        before = self._past.since(-math.inf)
         lately = before._replace(since=now - kernels.MISSED)
         kernels.predict(self._rows, dt, config.acceleration)
         discs = kernels.expected_discs(self._rows, now)
@@ -126,6 +132,7 @@ class Tracker:
         new = groups[~taken & (groups[:, detection.G_TRACK] < 0.0)]
         self._rows = np.vstack([kept, self._born(new, now)])
         self.tracks = tuple(self._listed())
+        self._past.add(scan, sensor)
         return moving
 
     def _born(self, groups: npt.NDArray[np.float64], now: float) -> npt.NDArray[np.float64]:

@@ -6,7 +6,8 @@ import numpy as np
 
 from dynastar.compiled import njit
 from dynastar.perception import detection as d
-from dynastar.perception.detection import fit_disc, seen_free
+from dynastar.perception.detection import fit_disc
+from dynastar.perception.past_scans import seen_free
 
 # Columns of a track. x and y have one covariance: T_PP of the position, T_VV of the velocity, T_PV
 # between them. T_FULL is for how long (s) both ends were in view, T_FREE the fraction of its points
