@@ -1,25 +1,159 @@
-"""Puts the table of a ``dynastar bench all`` into docs/benchmarks.md, between its markers.
+"""Fills docs/benchmarks.md from results in a folder, between the page's markers.
 
-python benchmarks/scoreboard_page.py out/bench/all.txt
+    dynastar bench all --quick --data DIR --out out/bench
+    python benchmarks/scoreboard_page.py out/bench --data DIR
+
+takes the table out/bench/all.txt, failures by kind and what limited the speed from out/bench/all.json,
+and the other controllers from out/bench/CONTROLLER-SUITE.json; those that are not there are run first,
+with --quick. A picture of each kind of failure is drawn by `dynastar bench SUITE --replay N`.
 """
 
+import argparse
+import json
+import shutil
+import subprocess
 import sys
+import tempfile
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
-PAGE = Path(__file__).parent.parent / "docs" / "benchmarks.md"
-BEGIN, END = "<!-- scoreboard -->", "<!-- end of scoreboard -->"
+DOCS = Path(__file__).parent.parent / "docs"
+PAGE, PICTURES = DOCS / "benchmarks.md", DOCS / "media" / "benchmarks"
+CONTROLLERS, SUITES = ("pure_pursuit", "kompass_dwa"), ("barn", "dynabarn", "maps", "people")
+KINDS = {
+    "moving": "touched while it moves",
+    "resting": "touched at rest",
+    "no progress": 'says "no progress, whatever was tried"',
+    "no way": "says that no way is left or leads to the goal",
+    "timeout": "the time is up",
+}
+
+Row = dict[str, Any]
 
 
-def filled(page: str, table: str) -> str:
-    """The page with the table as a code block between the markers."""
-    before, _, rest = page.partition(BEGIN)
-    _, found, after = rest.partition(END)
+def filled(page: str, name: str, text: str) -> str:
+    """The page with the text between the markers of that name."""
+    begin, end = f"<!-- {name} -->", f"<!-- end of {name} -->"
+    before, _, rest = page.partition(begin)
+    _, found, after = rest.partition(end)
     if not found:
-        raise SystemExit(f"{PAGE}: the markers {BEGIN} and {END} are not there")
-    return f"{before}{BEGIN}\n```text\n{table.strip()}\n```\n{END}{after}"
+        raise SystemExit(f"{PAGE}: the markers {begin} and {end} are not there")
+    return f"{before}{begin}\n{text.strip()}\n{end}{after}"
+
+
+def kind_of(row: Row) -> str:
+    """Which kind of failure a row is, or "" where it is none."""
+    if row.get("outcome") in ("arrived", "blocked_rightly", None):
+        return ""
+    if row["outcome"] == "contact":
+        return "moving" if row["contacts_moving"] else "resting"
+    if row["outcome"] == "blocked":
+        return "no progress" if row["reason"].startswith("no progress") else "no way"
+    return "timeout"
+
+
+def failures(suites: dict[str, Any]) -> dict[str, dict[str, list[int]]]:
+    """Numbers of the missions that failed, by kind and suite."""
+    found: dict[str, dict[str, list[int]]] = {}
+    for name, suite in suites.items():
+        for row in suite["rows"]:
+            kind = kind_of(row)
+            if kind:
+                found.setdefault(kind, {}).setdefault(name, []).append(row["number"])
+    return found
+
+
+def failures_table(found: dict[str, dict[str, list[int]]]) -> str:
+    """A line for each kind of failure, with its missions."""
+    lines = ["| failures | missions | which |", "|---|---|---|"]
+    for kind, words in KINDS.items():
+        of = found.get(kind, {})
+        if of:
+            which = "; ".join(f"`{suite}` {', '.join(map(str, n))}" for suite, n in of.items())
+            lines.append(f"| {words} | {sum(map(len, of.values()))} | {which} |")
+    return "\n".join(lines)
+
+
+def limits_table(suites: dict[str, Any]) -> str:
+    """What limited the speed, as shares of the time driven, by suite."""
+    of = {name: suite.get("limited") or {} for name, suite in suites.items()}
+    times = {
+        name: sum(row.get("time") or 0.0 for row in suite["rows"]) for name, suite in suites.items()
+    }
+    names = sorted({what for limited in of.values() for what in limited})
+    lines = [f"| suite | {' | '.join(names)} |", f"|---{'|---' * len(names)}|"]
+    for suite, limited in of.items():
+        if limited and times[suite] > 0.0:
+            shares = " | ".join(f"{100 * limited.get(n, 0.0) / times[suite]:.1f} %" for n in names)
+            lines.append(f"| `{suite}` | {shares} |")
+    return "\n".join(lines)
+
+
+def told(suite: dict[str, Any]) -> str:
+    """Arrivals, contacts while moving and at rest, and the suite's own figure."""
+    contacts = f"({suite['contacts_moving']}, {suite['contacts_resting']})"
+    own = f"time ratio {suite['time_ratio']:.2f}" if suite["time_ratio"] else ""
+    if suite["score"] is not None:
+        own = f"score {suite['score']:.3f}"
+    return f"{suite['succeeded']} of {suite['missions']} {contacts}, {own}"
+
+
+def controllers_table(folder: Path, data: Path, suites: dict[str, Any]) -> str:
+    """The navigator and the other controllers in the same missions."""
+    titles = " | ".join(f"`{name}`" for name in ("navigator", *CONTROLLERS))
+    lines = [f"| suite | {titles} |", f"|---|---{'|---' * len(CONTROLLERS)}|"]
+    for suite in SUITES:
+        cells = [told(suites[suite])]
+        for controller in CONTROLLERS:
+            file = folder / f"{controller}-{suite}.json"
+            if not file.exists():
+                options = ["--quick", "--data", str(data), "--controller", controller]
+                bench(suite, *options, "--json-out", str(file))
+            cells.append(told(json.loads(file.read_text(encoding="utf-8"))))
+        lines.append(f"| `{suite}` | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def bench(*arguments: str) -> None:
+    """Runs ``dynastar bench``; contacts are no error here."""
+    command = [sys.executable, "-m", "dynastar", "bench", *arguments]
+    if subprocess.run(command, stdout=subprocess.DEVNULL, check=False).returncode > 1:
+        raise SystemExit(f"failed: {' '.join(command)}")
+
+
+def pictures(found: dict[str, dict[str, list[int]]], data: Path) -> Iterable[str]:
+    """Draws the first mission of each kind, of the suite with most of them; its lines of the page."""
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    for old in PICTURES.glob("*.png"):
+        old.unlink()
+    for kind, words in KINDS.items():
+        of = found.get(kind)
+        if not of:
+            continue
+        suite = max(of, key=lambda name: len(of[name]))
+        number = of[suite][0]
+        with tempfile.TemporaryDirectory() as folder:
+            options = ["--data", str(data), "--out", folder, "--no-gif"]
+            bench(suite, "--replay", str(number), *options)
+            shutil.copy(Path(folder) / "figure.png", PICTURES / f"{suite}-{number}.png")
+        title = f"`{suite}` {number}: {words}."
+        yield f"![{title.replace('`', '')}](media/benchmarks/{suite}-{number}.png)\n\n*{title}*"
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        raise SystemExit(__doc__)
-    PAGE.write_text(filled(PAGE.read_text(encoding="utf-8"), Path(sys.argv[1]).read_text()))
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path, help="where all.txt and all.json are")
+    parser.add_argument("--data", type=Path, required=True, help="the public data sets")
+    arguments = parser.parse_args()
+    table = (arguments.folder / "all.txt").read_text(encoding="utf-8")
+    suites = json.loads((arguments.folder / "all.json").read_text(encoding="utf-8"))["suites"]
+    found = failures(suites)
+    page = PAGE.read_text(encoding="utf-8")
+    page = filled(page, "scoreboard", f"```text\n{table.strip()}\n```")
+    page = filled(page, "failures", failures_table(found))
+    page = filled(page, "limits", limits_table(suites))
+    others = controllers_table(arguments.folder, arguments.data, suites)
+    page = filled(page, "controllers", others)
+    page = filled(page, "pictures", "\n\n".join(pictures(found, arguments.data)))
+    PAGE.write_text(page, encoding="utf-8")

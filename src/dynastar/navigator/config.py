@@ -8,6 +8,8 @@ from dynastar.dwa.config import DwaConfig, Weights
 from dynastar.perception import LocalMapConfig, PredictionConfig, TrackerConfig
 from dynastar.planning import HeuristicConfig, PlannerConfig
 
+CELLS = 4  # of the maps, at least, to a robot's inscribed radius
+
 
 class NavigatorConfig(NamedTuple):
     """Everything a navigator can be told; the declared bounds are what its promise rests on."""
@@ -28,7 +30,7 @@ class NavigatorConfig(NamedTuple):
     global_path: Annotated[
         Literal["replanned", "once"], Field("planned whenever need be, or for each goal once")
     ] = "replanned"
-    planning_resolution: Annotated[float, Field("plan on cells no larger", "m", 0.01, 10.0)] = 0.05
+    planning_resolution: Annotated[float, Field("plan on cells no larger", "m", 0.001, 10.0)] = 0.05
     comfort: Annotated[float, Field("clearance a plan has to spare if it can", "m", 0.0, 5.0)] = 0.1
     stuck_time: Annotated[float, Field("no progress for so long is stuck", "s", 0.5, 120.0)] = 6.0
     attempts: Annotated[int, Field("rounds of recovery before giving up", "", 1, 100)] = 4
@@ -47,6 +49,20 @@ PRESETS: dict[str, NavigatorConfig] = {
         dwa=DwaConfig(weights=Weights(0.5, 0.2, 0.2, 0.1)),
     ),
 }
+
+
+def fitted(config: NavigatorConfig, inscribed: float) -> NavigatorConfig:
+    """Cells down to half as large for a robot of a small ``inscribed`` radius (m), in as many.
+
+    Range noise and rounding close gaps by a cell or two, which a small robot needs.
+    """
+    local = config.local_map
+    side = max(inscribed / CELLS, 0.5 * local.resolution)
+    share = min(1.0, side / local.resolution)
+    return config._replace(
+        planning_resolution=min(config.planning_resolution, side),
+        local_map=local._replace(resolution=share * local.resolution, size=share * local.size),
+    )
 
 
 def configured(

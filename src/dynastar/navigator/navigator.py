@@ -14,7 +14,7 @@ from dynastar.errors import GoalOccupied, NoPath, PlanningError
 from dynastar.geometry import Goal, Pose2D, Twist, wrap_angle
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator.braking import Commands
-from dynastar.navigator.config import NavigatorConfig
+from dynastar.navigator.config import NavigatorConfig, fitted
 from dynastar.navigator.guidance import Guidance
 from dynastar.navigator.planning_map import PlanningMap
 from dynastar.navigator.progress import Progress
@@ -50,6 +50,7 @@ class Navigator:
     ) -> None:
         if not config.reverse:
             robot = replace(robot, limits=robot.limits._replace(v_min=max(robot.limits.v_min, 0.0)))
+        config = fitted(config, robot.footprint.inscribed)
         self.robot, self.config = robot, config
         half_diagonal = config.local_map.resolution / math.sqrt(2.0)
         lever = math.hypot(robot.lidar.x, robot.lidar.y)
@@ -68,6 +69,7 @@ class Navigator:
         self.status = Status()
         self._goals: list[Goal] = []
         self._path: Path | None = None
+        self._stand = Path(np.zeros((1, 2)))  # where it waits while there is no path
         self._s = 0.0
         self._last = AT_REST
         self._planned_at = -math.inf
@@ -128,7 +130,7 @@ class Navigator:
             if not self._goals:
                 self._say("arrived", "the goal is reached", goals_left=0)
                 return self._commands.brake(state)
-        if not self._plan(state, changed):
+        if not self._plan(state, changed) and self.status.state == "blocked":
             return self._commands.brake(state)
         return self._drive(state, movers)
 
@@ -204,6 +206,7 @@ class Navigator:
         self._path = None
         if self._no_path_since is None:
             self._no_path_since = state.stamp
+            self._stand = Path(np.array([state.pose[:2]]))
         elif state.stamp - self._no_path_since > NO_PATH_TIME:
             self._forgotten += 1
             self._no_path_since = None
@@ -222,7 +225,7 @@ class Navigator:
         pose, twist = self._commands.when_one_acts(state)
         scene = self._scene(state, pose, movers)
         goal = self._goals[0]
-        if goal.heading is not None and self._near(goal, pose):
+        if self._path is not None and goal.heading is not None and self._near(goal, pose):
             command = self._turned(pose, twist, goal.heading)
             self._say("turning", "to the goal's heading", choice=None)
             self._last = AT_REST
@@ -237,14 +240,14 @@ class Navigator:
         self, state: RobotState, pose: Pose2D, movers: Sequence[MovingObstacle] | None
     ) -> Scene:
         """What the window is judged against, as of the time from which a command acts."""
-        assert self._path is not None
         config, limits, local = self.config, self.robot.limits, self.sensing.local_map
         span = self.window.span
         occupied = (local.states == SEEN_OCCUPIED) | self.planning_map.blocked_under(local)
         moving = self.sensing.moving(state.stamp, movers)
         people = predict(moving, config.prediction, config.latency, span.step, span.horizon_steps)
+        path, s = (self._stand, 0.0) if self._path is None else (self._path, self._s)
         obstacles, cost_to_go = self.guidance.update(
-            local, occupied, self._path, self._s, (pose.x, pose.y), people,
+            local, occupied, path, s, (pose.x, pose.y), people,
             (config.latency, span.step, limits.v_max, span.risk_radius),
         )  # fmt: skip
         hidden = self.sensing.unseen(occupied, state.stamp)
@@ -278,13 +281,15 @@ class Navigator:
     def _judge(self, state: RobotState, choice: Choice, people: bool) -> None:
         """Says what is going on, and starts anew where there has been no progress for long."""
         standing = choice.command is None or abs(choice.command.v) < 0.02
-        waiting = people and standing
-        self._say(
-            "waiting" if waiting else "following",
-            "a moving obstacle passes" if waiting else "the path",
-            choice=choice,
-            limited_by=choice.limited_by,
-        )
+        if self._path is None:
+            state_, reason = "waiting", "there is no path for now"
+        elif people and standing:
+            state_, reason = "waiting", "a moving obstacle passes"
+        else:
+            state_, reason = "following", "the path"
+        self._say(state_, reason, choice=choice, limited_by=choice.limited_by)
+        if self._path is None:
+            return
         here = (state.pose.x, state.pose.y)
         if not self.progress.stuck(state.stamp, here, self.guidance.cost_to_go):
             return

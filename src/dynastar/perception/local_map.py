@@ -20,8 +20,8 @@ Points = npt.NDArray[np.float64]
 class LocalMapConfig(NamedTuple):
     """The local map's settings."""
 
-    resolution: Annotated[float, Field("side of a cell", "m", 0.01, 1.0)] = 0.05
-    size: Annotated[float, Field("side of the window round the robot", "m", 2.0, 100.0)] = 10.0
+    resolution: Annotated[float, Field("side of a cell, or less", "m", 0.01, 1.0)] = 0.05
+    size: Annotated[float, Field("side of the window, in proportion", "m", 2.0, 100.0)] = 10.0
     memory: Annotated[float, Field("what was not seen for so long is unseen", "s", 1.0, 3600.0)] = (
         30.0
     )
