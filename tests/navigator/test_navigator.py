@@ -262,3 +262,21 @@ def test_a_path_planned_once_is_kept():
     drive.navigator.set_goal(Goal(6.5, 3.0))
     drive.for_seconds(8.0)
     assert (drive.status.replans, drive.status.plan_id) == (0, 1)
+
+
+def test_who_waits_for_a_path_steps_aside_for_who_comes():
+    """A wall that no map shows closes the room, so there is no path for some seconds."""
+    drive = Drive(room(), true=room(8.0, 6.0, (5.0, 0.0, 5.2, 6.0)))
+    drive.navigator.set_goal(Goal(7.0, 3.0))
+    drive.until("waiting")
+    assert "no path" in drive.status.reason
+    where = drive.pose
+    x, gaps = where.x - 2.0, []
+    for _ in range(25):
+        x += 0.8 * PERIOD
+        drive.tick(movers=[MovingObstacle(x, where.y, 0.8, 0.0, 0.25)])
+        gaps.append(math.dist(drive.pose[:2], (x, where.y)) - 0.5)
+        if drive.status.state != "waiting":
+            break
+    assert math.dist(drive.pose[:2], where[:2]) > 0.2
+    assert min(gaps) > 0.0

@@ -18,8 +18,11 @@ def heading(theta, bearing):
 
 @njit(cache=True)
 def progress(gained, scale):
-    """Decrease of the cost-to-go over a trajectory (m), over the most it could be (``scale``, m)."""
-    return gained / scale
+    """Decrease of the cost-to-go over a trajectory (m) over the most it could be (``scale``, m).
+
+    At least -1: to be driven off near the goal is no worse than anywhere else.
+    """
+    return max(gained / scale, -1.0)
 
 
 @njit(cache=True)

@@ -159,7 +159,7 @@ def future(
             gained += begin - here
             left = LOOKS - looks
             at_best = gained + left * (begin - here) + 0.5 * left * (left + 1) * most
-            terms[HEADING] = at_best / (LOOKS * scale)
+            terms[HEADING] = progress(at_best, LOOKS * scale)
             terms[RISK] = risk(scene.people, worst)
             if objective(weights, terms) < enough:
                 return False
