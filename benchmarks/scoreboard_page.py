@@ -10,13 +10,14 @@ with --quick. A picture of each kind of failure is drawn by `dynastar bench SUIT
 
 import argparse
 import json
-import shutil
 import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
+
+from PIL import Image
 
 DOCS = Path(__file__).parent.parent / "docs"
 PAGE, PICTURES = DOCS / "benchmarks.md", DOCS / "media" / "benchmarks"
@@ -44,7 +45,7 @@ def filled(page: str, name: str, text: str) -> str:
 
 def kind_of(row: Row) -> str:
     """Which kind of failure a row is, or "" where it is none."""
-    if row.get("outcome") in ("arrived", "blocked_rightly", None):
+    if row.get("outcome") in ("arrived", "blocked_rightly", None) or row.get("blocked_rightly"):
         return ""
     if row["outcome"] == "contact":
         return "moving" if row["contacts_moving"] else "resting"
@@ -81,12 +82,17 @@ def limits_table(suites: dict[str, Any]) -> str:
     times = {
         name: sum(row.get("time") or 0.0 for row in suite["rows"]) for name, suite in suites.items()
     }
-    names = sorted({what for limited in of.values() for what in limited})
+    shares = {
+        name: {what: 100.0 * seconds / times[name] for what, seconds in limited.items()}
+        for name, limited in of.items()
+        if times[name] > 0.0
+    }
+    names = sorted({what for share in shares.values() for what in share if share[what] >= 0.5})
     lines = [f"| suite | {' | '.join(names)} |", f"|---{'|---' * len(names)}|"]
-    for suite, limited in of.items():
-        if limited and times[suite] > 0.0:
-            shares = " | ".join(f"{100 * limited.get(n, 0.0) / times[suite]:.1f} %" for n in names)
-            lines.append(f"| `{suite}` | {shares} |")
+    for suite, share in shares.items():
+        if share:
+            cells = " | ".join(f"{share.get(name, 0.0):.1f}" for name in names)
+            lines.append(f"| `{suite}` | {cells} |")
     return "\n".join(lines)
 
 
@@ -136,7 +142,10 @@ def pictures(found: dict[str, dict[str, list[int]]], data: Path) -> Iterable[str
         with tempfile.TemporaryDirectory() as folder:
             options = ["--data", str(data), "--out", folder, "--no-gif"]
             bench(suite, "--replay", str(number), *options)
-            shutil.copy(Path(folder) / "figure.png", PICTURES / f"{suite}-{number}.png")
+            with Image.open(Path(folder) / "figure.png") as picture:
+                picture.thumbnail((1000, 1000))
+                small = picture.convert("RGB").quantize(96)
+            small.save(PICTURES / f"{suite}-{number}.png", optimize=True)
         title = f"`{suite}` {number}: {words}."
         yield f"![{title.replace('`', '')}](media/benchmarks/{suite}-{number}.png)\n\n*{title}*"
 

@@ -146,12 +146,13 @@ class DynamicWindow:
             refused,
             terms[:n].copy(),
             score[:n].copy(),
-            self._limit(chosen, samples[:n], refused, scene.v_cap),
+            self._limit(chosen, twist.v, samples[:n], refused, scene.v_cap),
         )
 
     def _limit(
         self,
         chosen: Manoeuvre | None,
+        v: float,
         samples: Floats,
         refused: npt.NDArray[np.int64],
         v_cap: float,
@@ -161,7 +162,7 @@ class DynamicWindow:
         if chosen is None:
             return "no admissible command"
         if chosen.v >= 0.95 * limits.v_max:
-            return ""
+            return "" if v >= 0.95 * limits.v_max else "acceleration"
         if chosen.v >= 0.95 * v_cap:
             return "speed limit"
         codes = refused[samples[:, 0] > chosen.v + 1e-6]
