@@ -22,6 +22,7 @@ def test_the_heading_term_of_equation_8(theta, bearing):
 def test_the_other_terms_are_scaled_to_one():
     assert o.progress(1.0, 2.0) == 0.5
     assert o.progress(-3.0, 2.0) == -1.0
+    assert o.progress(9.0, 2.0) == 1.0
     assert (o.dist(0.1, 0.4), o.dist(9.0, 0.4), o.dist(-0.2, 0.4)) == pytest.approx(
         (0.25, 1.0, -0.5)
     )

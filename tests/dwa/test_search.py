@@ -116,6 +116,25 @@ def test_a_mover_head_on_is_run_less_risk_with_than_straight_on(lateral):
     assert abs(careless.manoeuvre.omega) < 0.2
 
 
+def test_the_robot_passes_before_somebody_where_a_stop_would_end_in_their_way():
+    mover = MovingObstacle(3.6, 2.6, 0.0, 0.7, 0.3)
+    pose, twist = Pose2D(3.0, 4.0, 0.0), Twist(1.0, 0.0)
+    scene = scene_of(empty(), movers=[mover], last=Manoeuvre(1.0, 0.0, 0.5, FOLLOW))
+    window = DynamicWindow(ROUND, DwaConfig(), PERIOD)
+    assert not window.admits(pose, twist, scene, Twist(1.0, 0.0))
+    choice = window.choose(pose, twist, scene)
+    assert choice.command is not None
+    assert choice.command.v > 0.9
+    assert choice.refusals["moving obstacle"] > 0
+
+
+def test_the_robot_brakes_for_whom_it_cannot_pass():
+    movers = [MovingObstacle(4.4, 4.0 + y, -1.0, 0.0, 0.3) for y in (-2.0, -1.0, 0.0, 1.0, 2.0)]
+    choice = choose(empty(), (3.0, 4.0, 0.0), Twist(1.0, 0.0), movers=movers)
+    assert choice.command is None or choice.command.v < 0.95
+    assert choice.refusals["moving obstacle"] > 0
+
+
 @given(st.sampled_from(sorted(ROBOTS)), st.floats(0, 1), st.floats(-1, 1), st.integers(0, 10**6))
 @settings(max_examples=40, deadline=None)
 def test_the_choice_is_the_admissible_sample_with_the_highest_score(name, v, omega, seed):

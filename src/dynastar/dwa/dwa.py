@@ -9,11 +9,12 @@ import numpy.typing as npt
 
 from dynastar.dwa import admissible
 from dynastar.dwa.config import DwaConfig
+from dynastar.dwa.rollout import LOOKS
 from dynastar.dwa.scene import AT_REST, Manoeuvre, Scene
-from dynastar.dwa.search import LOOKS, search
+from dynastar.dwa.search import search
 from dynastar.dwa.window import dynamic_window, sample_window
 from dynastar.geometry import Pose2D, Twist
-from dynastar.robot import Robot
+from dynastar.robot import Limits, Robot
 
 LONG_TIME = 1.5  # s that a sample is held for at the longest
 
@@ -49,6 +50,16 @@ class Span(NamedTuple):
     comfort: float
     hysteresis: float
     risk_radius: float
+
+
+class Rules(NamedTuple):
+    """What a robot's candidates are judged by: its shape, limits, span, weights (Eq. 9), period (s)."""
+
+    body: Body
+    limits: Limits
+    span: Span
+    weights: tuple[float, float, float, float, float]
+    period: float
 
 
 def body_of(robot: Robot) -> Body:
@@ -114,7 +125,9 @@ class DynamicWindow:
             np.zeros(n, np.int64),
             np.empty(n),
         )
-        self._weights = tuple(map(float, config.weights))
+        alpha, beta, gamma, sigma, rho = map(float, config.weights)
+        weights = alpha, beta, gamma, sigma, rho
+        self._rules = Rules(self.body, limits, self.span, weights, period)
 
     def choose(self, pose: Pose2D, twist: Twist, scene: Scene) -> Choice:
         """The best admissible command from ``pose`` and ``twist``."""
@@ -125,9 +138,7 @@ class DynamicWindow:
             window, self._speeds, self._rates, config.v_samples, config.omega_samples, samples
         )
         state = ((pose.x, pose.y, math.cos(pose.theta), math.sin(pose.theta)), *twist)
-        best = search(
-            scene, self.body, limits, self.span, self._weights, state, n, self._buffers, self.period
-        )
+        best = search(scene, self._rules, state, n, self._buffers)
         n += 2
         refused = refused[:n].copy()
         counts = np.bincount(refused, minlength=max(REFUSALS) + 1)

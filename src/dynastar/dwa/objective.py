@@ -20,9 +20,10 @@ def heading(theta, bearing):
 def progress(gained, scale):
     """Decrease of the cost-to-go over a trajectory (m) over the most it could be (``scale``, m).
 
-    At least -1: to be driven off near the goal is no worse than anywhere else.
+    From -1 to 1: to be driven off near the goal is no worse than anywhere else, and to get out of
+    somebody's way is worth no more than to drive on.
     """
-    return max(gained / scale, -1.0)
+    return min(max(gained / scale, -1.0), 1.0)
 
 
 @njit(cache=True)

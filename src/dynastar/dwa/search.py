@@ -1,175 +1,28 @@
-"""The search over the window: every sample's futures are rolled out and scored, the best is taken.
+"""The search over the window: every sample's manoeuvres are rolled out, the best is taken.
 
-A future holds the sample for a short or a long time; then the robot follows the cost-to-go, stops,
-or backs off. Progress is the mean of what the cost-to-go has fallen by at times along it, so that to
-put it off costs something; risk is looked for up to the horizon.
+A manoeuvre holds the sample for a short or a long time; then the robot follows the cost-to-go,
+stops, or backs off.
 """
-
-import math
 
 import numpy as np
 
 from dynastar.compiled import njit
-from dynastar.dwa.admissible import ADMISSIBLE, certified_stop, rests_in_time
-from dynastar.dwa.clearance import distance_at
-from dynastar.dwa.cost_to_go import direction_at, value_at
-from dynastar.dwa.motion import driven, slew
-from dynastar.dwa.objective import dist, note_risk, objective, progress, risk, vel
+from dynastar.dwa.admissible import ADMISSIBLE, MOVER, certified_stop, rests_in_time
+from dynastar.dwa.motion import slew
+from dynastar.dwa.objective import objective
+from dynastar.dwa.rollout import (
+    LOOKS,
+    SCORED,
+    TOUCHED,
+    farthest,
+    future,
+    least_clearance,
+    pose_value,
+    tail_speeds,
+)
 from dynastar.dwa.scene import BACK, FOLLOW
 
-HEADING, DIST, VEL, SIMI, RISK = range(5)
-SLACK = (
-    0.02  # m that a roll-out may come nearer to an obstacle than the robot is, inside the margin
-)
-OVERSHOOT = 0.25  # m that the robot may stop beyond the end of its path
 LEAST = 0.1  # m of progress that is worth all of it, at least
-LOOKS = 8  # times at which the cost-to-go is looked up along a roll-out
-BEST_GAIN = 2.0  # decrease of the cost-to-go over a metre, at most, for what is worth looking at
-
-
-@njit(cache=True)
-def least_clearance(field, body, pose):
-    """Metres from the footprint's probes to the nearest obstacle's centre; exact where it matters."""
-    d = distance_at(field, pose[0], pose[1])
-    if d - body.circumscribed > 0.3:
-        return d - body.circumscribed
-    least = d - body.inscribed
-    for i in range(1, len(body.probes)):
-        dx, dy, radius = body.probes[i]
-        x, y = pose[0] + pose[2] * dx - pose[3] * dy, pose[1] + pose[3] * dx + pose[2] * dy
-        least = min(least, distance_at(field, x, y) - radius)
-    return least
-
-
-@njit(cache=True)
-def turn_to_descent(field, pose, ahead):
-    """Angle (rad, -pi to pi) from a pose's heading to where the cost-to-go falls ``ahead`` m of it."""
-    ux, uy = direction_at(field, pose[0] + ahead * pose[2], pose[1] + ahead * pose[3])
-    return math.atan2(pose[2] * uy - pose[3] * ux, pose[2] * ux + pose[3] * uy)
-
-
-@njit(cache=True)
-def pose_value(field, limits, pose, v):
-    """The cost-to-go (m) of a pose and speed: its place's, the curve to its descent, overshooting.
-
-    A curve of radius r that turns by an angle a gets r sin a ahead on a way of r a. It doubles what
-    is left at most: near its goal the robot backs or turns on the spot.
-    """
-    left = value_at(field, pose[0], pose[1])
-    off = abs(turn_to_descent(field, pose, 0.0))
-    curve = (off - math.sin(off)) * limits.v_max / limits.omega_max
-    too_far = max(0.0, 0.5 * v * v / limits.v_brake - max(left, 0.0) - OVERSHOOT)
-    return left + min(curve, max(left, 0.0)) + too_far
-
-
-@njit(cache=True)
-def farthest(v, limits, t):
-    """Metres that can be driven in ``t`` seconds from a speed ``v``."""
-    to_full = max(0.0, limits.v_max - v) / limits.v_accel
-    speeding = min(t, to_full)
-    return (v + 0.5 * limits.v_accel * speeding) * speeding + limits.v_max * (t - speeding)
-
-
-@njit(cache=True)
-def follow(scene, limits, comfort, pose, v, clear):
-    """Speeds that follow the descent of the cost-to-go from a pose with clearance ``clear`` (m).
-
-    The robot steers by the descent where it will be once its turning rate has changed, and slows
-    down for the bend where it could stop.
-    """
-    field = scene.cost_to_go
-    off = turn_to_descent(field, pose, 0.5 * v * limits.omega_max / limits.omega_accel)
-    bend = turn_to_descent(field, pose, 0.5 * v * abs(v) / limits.v_brake)
-    rate = min(limits.omega_max, 3.0 * abs(off), math.sqrt(1.6 * limits.omega_brake * abs(off)))
-    wanted_v = limits.v_max * max(0.0, 1.0 - 1.5 * max(abs(off), abs(bend)))
-    wanted_v *= min(1.0, max(0.2, clear / comfort))
-    left = max(value_at(field, pose[0], pose[1]), 0.0)
-    return min(wanted_v, math.sqrt(1.6 * limits.v_brake * left)), math.copysign(rate, off)
-
-
-@njit(cache=True)
-def tail_speeds(scene, limits, comfort, pose, v, clear, tail):
-    """The speeds that a tail asks for at a pose."""
-    if tail == FOLLOW:
-        return follow(scene, limits, comfort, pose, v, clear)
-    if tail == BACK:
-        return limits.v_min, 0.0
-    return 0.0, 0.0
-
-
-@njit(cache=True)
-def future(
-    scene,
-    body,
-    limits,
-    span,
-    weights,
-    state,
-    sample,
-    held,
-    tail,
-    begin,
-    scale,
-    enough,
-    terms,
-    worst,
-):
-    """Writes the terms of a sample that is held for ``held`` steps, and then followed by a tail.
-
-    False at contact while it is held, and once it can no longer score more than ``enough``.
-    ``begin`` is the cost-to-go now, ``scale`` (m) the most progress that could be made, ``worst``
-    (m, hypotheses) room for the risk.
-    """
-    pose, v, omega = state
-    gap = least_clearance(scene.obstacles, body, pose) - scene.margin
-    need = min(0.0, gap) - SLACK
-    between = span.horizon_steps // LOOKS
-    most = BEST_GAIN * limits.v_max * span.step * between
-    people = len(scene.people.now) > 0
-    worst[:] = 0.0
-    clear, gained, here, looks = gap, 0.0, begin, 0
-    terms[DIST], terms[VEL], terms[SIMI] = 1.0, vel(sample[0], limits.v_max), 0.0
-    blocked = False
-    last = span.horizon_steps
-    k = 0
-    while k < last:
-        stride = 1 if k < span.steps else min(2, last - k)
-        wanted_v, wanted_omega = sample
-        if k >= held:
-            wanted_v, wanted_omega = tail_speeds(scene, limits, span.comfort, pose, v, gap, tail)
-        if not blocked and (v != 0.0 or omega != 0.0 or wanted_v != 0.0 or wanted_omega != 0.0):
-            duration = span.step * stride
-            pose, v, omega = driven(pose, v, omega, wanted_v, wanted_omega, limits, duration)
-            gap = least_clearance(scene.obstacles, body, pose) - scene.margin
-            if gap < need:
-                if k < span.steps:
-                    return False
-                blocked = True
-        if k < span.steps:
-            clear = min(clear, gap)
-        k += stride
-        if people:
-            t = k * span.step
-            note_risk(scene.people, k - 1, t, pose[0], pose[1], span.risk_radius, worst)
-        if k == span.steps:
-            terms[DIST] = dist(clear, span.comfort)
-        if looks < LOOKS and k >= (looks + 1) * between:
-            looks += 1
-            here = pose_value(scene.cost_to_go, limits, pose, v)
-            gained += begin - here
-            left = LOOKS - looks
-            at_best = gained + left * (begin - here) + 0.5 * left * (left + 1) * most
-            terms[HEADING] = progress(at_best, LOOKS * scale)
-            terms[RISK] = risk(scene.people, worst)
-            if objective(weights, terms) < enough:
-                return False
-        elif people and k % 8 == 0:
-            terms[RISK] = risk(scene.people, worst)
-            if objective(weights, terms) < enough:
-                return False
-    terms[HEADING] = progress(gained, LOOKS * scale)
-    terms[RISK] = risk(scene.people, worst)
-    return True
 
 
 @njit(cache=True)
@@ -183,8 +36,9 @@ def worth_holding(sample, limits, tail, long, people):
 
 
 @njit(cache=True)
-def refusal(scene, body, limits, state, command, period):
-    """ADMISSIBLE, or why a command is not."""
+def refusal(scene, rules, state, command):
+    """ADMISSIBLE, or why a command is not; MOVER where it does not rest in time."""
+    body, limits, period = rules.body, rules.limits, rules.period
     code = certified_stop(scene, body, limits, state, command, period)
     if code != ADMISSIBLE:
         return code
@@ -192,14 +46,18 @@ def refusal(scene, body, limits, state, command, period):
 
 
 @njit(cache=True)
-def search(scene, body, limits, span, weights, state, n, buffers, period):
+def search(scene, rules, state, n, buffers):
     """Scores the admissible of ``n`` samples by Eq. 9 and returns the best, or -1.
+
+    Where a command does not rest in time before moving obstacles, a manoeuvre that begins with it is
+    admissible only if it passes clear of everybody who keeps on.
 
     Two more candidates are written behind them: what the manoeuvre chosen last would do now (n),
     looked at first, and following the cost-to-go at once (n + 1). Every change from the former has
     to be worth something. ``buffers`` are samples, commands (n + 2, 2), holds in seconds and tails
     (n + 2,), terms (n + 2, 5), refusals and scores (n + 2,).
     """
+    limits, span, period = rules.limits, rules.span, rules.period
     samples, commands, holds, tails, terms, refused, score = buffers
     pose, v, omega = state
     worst = np.zeros((len(scene.people.now), scene.people.mean.shape[1]))
@@ -211,7 +69,7 @@ def search(scene, body, limits, span, weights, state, n, buffers, period):
         scale += min(farthest(max(v, 0.0), limits, look * between), begin) / LOOKS
     scale = max(scale, LEAST)
     people = len(scene.people.now) > 0
-    gap = least_clearance(scene.obstacles, body, pose) - scene.margin
+    gap = least_clearance(scene.obstacles, rules.body, pose) - scene.margin
     samples[n] = scene.last.v, scene.last.omega
     if scene.last.hold < 0.5 * span.step:
         samples[n] = tail_speeds(scene, limits, span.comfort, pose, v, gap, scene.last.tail)
@@ -225,10 +83,10 @@ def search(scene, body, limits, span, weights, state, n, buffers, period):
         sample = (samples[i, 0], samples[i, 1])
         commands[i, 0] = slew(v, sample[0], limits.v_accel, limits.v_brake, period)
         commands[i, 1] = slew(omega, sample[1], limits.omega_accel, limits.omega_brake, period)
-        command = (commands[i, 0], commands[i, 1])
-        refused[i] = refusal(scene, body, limits, state, command, period)
-        if refused[i] != ADMISSIBLE:
+        refused[i] = refusal(scene, rules, state, (commands[i, 0], commands[i, 1]))
+        if refused[i] != ADMISSIBLE and refused[i] != MOVER:
             continue
+        has_to_pass = refused[i] == MOVER
         change = 0.0 if i == n else span.hysteresis
         for kind in range(6):
             tail, long = kind % 3, kind >= 3
@@ -243,12 +101,13 @@ def search(scene, body, limits, span, weights, state, n, buffers, period):
                     continue
             elif not worth_holding(sample, limits, tail, long, people):
                 continue
-            enough = max(best_score, score[i]) + change
-            if future(
-                scene, body, limits, span, weights, state, sample, held, tail, begin, scale, enough,
-                found, worst,
-            ):  # fmt: skip
-                total = objective(weights, found) - change
+            manoeuvre = (sample[0], sample[1], held, tail, has_to_pass)
+            gauge = (begin, scale, max(best_score, score[i]) + change)
+            outcome = future(scene, rules, state, manoeuvre, gauge, found, worst)
+            if outcome != TOUCHED:
+                refused[i] = ADMISSIBLE
+            if outcome == SCORED:
+                total = objective(rules.weights, found) - change
                 if total > score[i]:
                     score[i] = total
                     terms[i] = found

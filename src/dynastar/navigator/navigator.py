@@ -32,8 +32,6 @@ log = logging.getLogger("dynastar")
 REPLAN_PERIOD = 1.0  # s between two plans at the least
 REVIEW_PERIOD = 5.0  # s after which a better plan is looked for
 BETTER = 0.9  # of what is left of a path, up to which a new one replaces it
-NO_PATH_TIME = 2.0  # s without any path until what was sensed is forgotten
-FORGET_LIMIT = 2  # times that it is forgotten for want of a path
 GENTLE = 0.7  # of the braking that slowing down for a speed limit or a heading uses
 PLAN_MARGIN = 0.03  # m beyond the footprint that a plan keeps clear
 
@@ -200,14 +198,14 @@ class Navigator:
     def _no_plan(self, state: RobotState, error: PlanningError) -> bool:
         """No path on the planning map: what was sensed may be gone, so forget it and look again."""
         sensed = isinstance(error, NoPath | GoalOccupied) and bool(self.planning_map.seen.any())
-        if not sensed or self._forgotten >= FORGET_LIMIT:
+        if not sensed or self._forgotten >= self.config.attempts:
             self._say("blocked", f"no way is left: {error}" if sensed else str(error), error=error)
             return False
         self._path = None
         if self._no_path_since is None:
             self._no_path_since = state.stamp
             self._stand = Path(np.array([state.pose[:2]]))
-        elif state.stamp - self._no_path_since > NO_PATH_TIME:
+        elif state.stamp - self._no_path_since > self.config.stuck_time:
             self._forgotten += 1
             self._no_path_since = None
             self.planning_map.forget()

@@ -29,8 +29,8 @@ class PredictionConfig(NamedTuple):
     error: Annotated[float, Field("deviation of a moving obstacle's position", "m", 0.0, 2.0)] = (
         0.08
     )
-    spread: Annotated[float, Field("growth of that deviation with time", "m/s", 0.0, 5.0)] = 0.1
-    memory: Annotated[float, Field("time constant that discounts risk", "s", 0.1, 60.0)] = 3.0
+    spread: Annotated[float, Field("growth of that deviation with time", "m/s", 0.0, 5.0)] = 0.2
+    memory: Annotated[float, Field("time constant that discounts risk", "s", 0.1, 60.0)] = 2.0
 
 
 class People(NamedTuple):

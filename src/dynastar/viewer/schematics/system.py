@@ -90,7 +90,7 @@ BLOCKS = {
 STAGES = (
     ("window", "Eqs. 5 and 6:\nspeeds in reach", "dwa.window"),
     ("certified stop", "Eq. 7: the footprint\ncan always brake", "dwa.admissible"),
-    ("rollouts", "Eq. 4: an arc, then\ndown the cost-to-go", "dwa.motion\ndwa.search"),
+    ("rollouts", "Eq. 4: an arc, then\ndown the cost-to-go", "dwa.motion\ndwa.rollout"),
     ("evaluation", "Eq. 9: heading,\ndist, vel, and risk", "dwa.objective"),
 )
 
