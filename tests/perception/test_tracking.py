@@ -217,14 +217,19 @@ def test_what_stands_is_not_confirmed_though_the_robot_turns(omega):
     assert not watcher.ever
 
 
-def test_what_comes_into_view_is_tentative_until_it_is_known_to_stand():
+def test_what_comes_into_view_and_stands_is_no_track():
     watcher = Watcher()
-    watcher.watch(lambda t: [(3.0, 0.0, 0.3)], 0.3)
-    (new,) = watcher.tracker.tracks
-    assert new.state == "tentative"
-    assert (new.x, new.y, new.radius) == pytest.approx((3.0, 0.0, 0.3), abs=0.05)
     watcher.watch(lambda t: [(3.0, 0.0, 0.3)], 2.0)
     assert watcher.tracker.tracks == ()
+
+
+def test_who_begins_to_move_is_tentative_until_that_is_certain():
+    watcher, states = Watcher(), []
+    for k in range(1, 21):
+        watcher.look(k / 20, [(3.0, -1.0 + 0.4 * k / 20, 0.3)])
+        states += [track.state for track in watcher.tracker.tracks]
+    assert states[0] == "tentative"
+    assert states[-1] == "confirmed"
 
 
 # -- stopping --------------------------------------------------------------------------------------

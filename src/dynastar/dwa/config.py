@@ -25,8 +25,8 @@ class DwaConfig(NamedTuple):
     reach: Annotated[
         float, Field("a sample is reached in so long at most; 0: in one period", "s", 0.0, 5.0)
     ] = 1.0
-    v_samples: Annotated[int, Field("speeds in the window", "", 2, 1000)] = 8
-    omega_samples: Annotated[int, Field("turning rates in the window", "", 2, 1000)] = 14
+    v_samples: Annotated[int, Field("speeds in the window", "", 2, 1000)] = 5
+    omega_samples: Annotated[int, Field("turning rates in the window", "", 2, 1000)] = 11
     comfort: Annotated[float, Field("more clearance is no better", "m", 0.01, 10.0)] = 0.25
     hysteresis: Annotated[float, Field("what a change of mind has to be worth", "", 0.0, 10.0)] = (
         0.02

@@ -151,11 +151,12 @@ class Navigator:
 
     def _plan(self, state: RobotState, changed: bool) -> bool:
         """Keeps a path that leads to the goal; False if there is none for now."""
-        here = (state.pose.x, state.pose.y)
-        if self._path is None:
-            return self._replan(state, "a plan is needed")
-        self._s = self._path.project(*here, low=self._s - 0.5, high=self._s + 2.0)
         since = state.stamp - self._planned_at
+        if self._path is None:
+            waits = self._no_path_since is not None and since < REPLAN_PERIOD
+            return False if waits else self._replan(state, "a plan is needed")
+        here = (state.pose.x, state.pose.y)
+        self._s = self._path.project(*here, low=self._s - 0.5, high=self._s + 2.0)
         if since < REPLAN_PERIOD or self.config.global_path == "once":
             return True
         if not self.guidance.reachable:

@@ -72,7 +72,7 @@ class Track(NamedTuple):
 class Tracker:
     """Follows things from scan to scan, within ``range_error`` (m), and finds out which of them move.
 
-    ``tracks``, as of the last scan, are "tentative" (seen too short a time to tell), "confirmed"
+    ``tracks``, as of the last scan, are "tentative" (seems to move, not yet for certain), "confirmed"
     (moves), "stopped" (moved, and stands now) or "occluded" (moved, and is out of sight). What was
     only ever seen to stand is not among them.
     """
@@ -153,10 +153,9 @@ class Tracker:
     def _listed(self) -> list[Track]:
         now, rows = self._stamp, self._rows
         known = rows[:, kernels.T_STATE] != kernels.TENTATIVE
-        new = now - rows[:, kernels.T_BORN] < self.config.rest_time
         fast = np.hypot(rows[:, kernels.T_VX], rows[:, kernels.T_VY]) > self.config.slowest
         listed = []
-        for row in rows[known | new | fast].tolist():
+        for row in rows[known | fast].tolist():
             x, y, vx, vy = row[kernels.T_X : kernels.T_VY + 1]
             unseen = now - row[kernels.T_SEEN]
             state: TrackState = "tentative"
