@@ -6,7 +6,8 @@ import numpy as np
 
 from dynastar.clearance import lower_bounds
 from dynastar.dwa import CostToGo, DistanceField, Scene
-from dynastar.dwa.cost_to_go import extend, march
+from dynastar.dwa.cost_to_go import descend
+from dynastar.dwa.marching import extend, march, queue_for
 from dynastar.dwa.scene import AT_REST
 from dynastar.perception import PredictionConfig
 from dynastar.perception.hidden import Hidden
@@ -49,12 +50,12 @@ def cost_to_go(closed, goal, radius):
     """The cost-to-go to ``goal`` of a disc, without any soft cost."""
     n = SIDE // 2
     room = field_of(closed).distance.reshape(n, 2, n, 2).max(axis=(1, 3)) >= radius
-    value, filled, slope = np.empty((n, n)), np.empty((n, n)), np.full((n, n, 2), np.nan)
+    value, filled, slope = np.empty((n, n)), np.empty((n, n)), np.empty((n, n, 2))
     row, column = (int(metres / (2 * CELL)) for metres in goal[::-1])
-    keys, nodes = np.empty(4 * n * n), np.empty(4 * n * n, np.int64)
     cost = np.where(room, 1.0, np.inf)
-    march(cost, 2 * CELL, (row, column, 0.0), (row, column), 99.0, value, keys, nodes)
-    extend(cost, value, 2 * CELL, filled)
+    march(cost, 2 * CELL, (row, column, 0.0), (row, column), 99.0, value, queue_for(n * n))
+    extend(value, 2 * CELL, filled)
+    descend(value, filled, slope)
     return CostToGo(value, filled, slope, 0.0, 0.0, 2 * CELL)
 
 

@@ -91,6 +91,18 @@ def test_shut_in_one_stands():
         assert max(abs(pose.x - 4.0), abs(pose.y - 4.0)) < 0.8 - 0.3
 
 
+def test_a_manoeuvre_that_is_carried_on_ends_in_time_though_ticks_are_shorter_than_steps():
+    stubborn = DwaConfig(hysteresis=10.0)
+    window = DynamicWindow(ROUND, stubborn, 0.05)
+    last, holds = Manoeuvre(0.3, 0.2, 0.5, FOLLOW), []
+    for _ in range(10):
+        choice = window.choose(Pose2D(1.0, 4.0, 0.0), Twist(0.3, 0.2), scene_of(empty(), last=last))
+        assert choice.manoeuvre is not None
+        holds.append(choice.manoeuvre.hold)
+        last = choice.left
+    assert holds == pytest.approx(np.arange(0.5, 0.0, -0.05))
+
+
 def risk_of(choice_twist, scene, pose):
     """The risk of holding a twist for 3 s."""
     worst = np.zeros((len(scene.people.now), 3))

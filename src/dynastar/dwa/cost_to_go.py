@@ -1,7 +1,7 @@
 """The cost-to-go over the local map: metres left to the goal, weighted by closeness to obstacles.
 
 A navigation function: the Eikonal equation |grad V| = cost, solved outwards from where the global
-path leaves the local map, by fast marching [Sethian1996].
+path leaves the local map (``marching``).
 """
 
 import math
@@ -13,7 +13,6 @@ from dynastar.dwa.objective import contact_probability
 
 NEAR_COST = 4.0  # extra cost of a metre right at the margin of an obstacle
 MEETING_COST = 15.0  # of a metre where a moving obstacle is met for certain
-WALL_COST = 40.0  # of a metre through what cannot be driven: values there only lead out of it
 
 
 @njit(cache=True)
@@ -77,111 +76,6 @@ def add_moving(cost, frame, people, timing, robot, radius, speed):
                             cost[row, column] += MEETING_COST * p
 
 
-@njit(cache=True, inline="always")
-def push(keys, nodes, n, key, node):
-    """Adds to a binary heap of ``n`` entries."""
-    i = n
-    while i > 0 and keys[(i - 1) >> 1] > key:
-        keys[i], nodes[i] = keys[(i - 1) >> 1], nodes[(i - 1) >> 1]
-        i = (i - 1) >> 1
-    keys[i], nodes[i] = key, node
-    return n + 1
-
-
-@njit(cache=True, inline="always")
-def pop(keys, nodes, n):
-    """Takes the least from a binary heap of ``n`` entries: its key, its node, how many are left."""
-    key, node = keys[0], nodes[0]
-    n -= 1
-    last_key, last_node, i = keys[n], nodes[n], 0
-    while 2 * i + 1 < n:
-        j = 2 * i + 1
-        if j + 1 < n and keys[j + 1] < keys[j]:
-            j += 1
-        if keys[j] >= last_key:
-            break
-        keys[i], nodes[i] = keys[j], nodes[j]
-        i = j
-    keys[i], nodes[i] = last_key, last_node
-    return key, node, n
-
-
-@njit(cache=True)
-def march(cost, resolution, seed, stop, beyond, value, keys, nodes):  # arrays are made once
-    """Fast marching from ``seed`` (row, column, value); fills ``value``, inf where not reached.
-
-    Ends ``beyond`` metres after the value at ``stop`` (row, column) is known. ``keys`` and ``nodes``
-    are room for a heap, four entries a cell.
-    """
-    row, column, begin = seed
-    rows, columns = cost.shape
-    value[:] = np.inf
-    settled = np.zeros((rows, columns), np.bool_)
-    value[row, column] = begin
-    n = push(keys, nodes, 0, begin, row * columns + column)
-    limit = np.inf
-    while n > 0:
-        key, node, n = pop(keys, nodes, n)
-        r, c = node // columns, node % columns
-        if settled[r, c]:
-            continue
-        if key > limit:
-            break
-        settled[r, c] = True
-        if r == stop[0] and c == stop[1]:
-            limit = key + beyond
-        for k in range(4):
-            a, b = r + (k == 0) - (k == 1), c + (k == 2) - (k == 3)
-            if a < 0 or b < 0 or a >= rows or b >= columns or settled[a, b]:
-                continue
-            if cost[a, b] == np.inf:
-                continue
-            across, along = np.inf, np.inf
-            if b > 0 and settled[a, b - 1]:
-                across = value[a, b - 1]
-            if b < columns - 1 and settled[a, b + 1]:
-                across = min(across, value[a, b + 1])
-            if a > 0 and settled[a - 1, b]:
-                along = value[a - 1, b]
-            if a < rows - 1 and settled[a + 1, b]:
-                along = min(along, value[a + 1, b])
-            step = cost[a, b] * resolution
-            apart = across - along
-            if abs(apart) < step:
-                new = 0.5 * (across + along + math.sqrt(2.0 * step * step - apart * apart))
-            else:
-                new = min(across, along) + step
-            if new < value[a, b]:
-                value[a, b] = new
-                n = push(keys, nodes, n, new, a * columns + b)
-    for r in range(rows):
-        for c in range(columns):
-            if not settled[r, c]:
-                value[r, c] = np.inf
-
-
-@njit(cache=True)
-def extend(cost, value, resolution, filled):
-    """Writes ``value`` to ``filled`` and, where it is not known, values that lead to where it is."""
-    rows, columns = value.shape
-    step = WALL_COST * resolution
-    for r in range(rows):
-        for c in range(columns):
-            filled[r, c] = value[r, c]
-            if value[r, c] == np.inf:
-                if r > 0:
-                    filled[r, c] = min(filled[r, c], filled[r - 1, c] + step)
-                if c > 0:
-                    filled[r, c] = min(filled[r, c], filled[r, c - 1] + step)
-    for r in range(rows - 1, -1, -1):
-        for c in range(columns - 1, -1, -1):
-            if value[r, c] == np.inf:
-                if r < rows - 1:
-                    filled[r, c] = min(filled[r, c], filled[r + 1, c] + step)
-                if c < columns - 1:
-                    filled[r, c] = min(filled[r, c], filled[r, c + 1] + step)
-
-
 @njit(cache=True)
 def value_at(ahead, x, y):
     """The cost-to-go (m) at a point: bilinear between the cells where it is known."""
@@ -205,31 +99,36 @@ def value_at(ahead, x, y):
 
 
 @njit(cache=True)
-def descent(ahead, r, c):
-    """Unit vector in which the cost-to-go falls most steeply at a cell, (0, 0) where it is least.
+def descend(value, filled, slope):
+    """Writes the unit vector in which the cost-to-go falls at each cell to ``slope`` (n, n, 2).
 
     Differences are taken to the lower neighbour of each axis, as the marching did, so that walls
-    have no part in them.
+    have no part in them. (0, 0) where it is least, and in the outermost cells.
     """
-    values = ahead.value if ahead.value[r, c] < np.inf else ahead.filled
-    rows, columns = values.shape
-    here = values[r, c]
-    west = values[r, c - 1] if c > 0 else np.inf
-    east = values[r, c + 1] if c < columns - 1 else np.inf
-    south = values[r - 1, c] if r > 0 else np.inf
-    north = values[r + 1, c] if r < rows - 1 else np.inf
-    gx = max(0.0, here - min(west, east)) * (1.0 if east < west else -1.0)
-    gy = max(0.0, here - min(south, north)) * (1.0 if north < south else -1.0)
-    steep = math.hypot(gx, gy)
-    if not 0.0 < steep < np.inf:
-        return 0.0, 0.0
-    return gx / steep, gy / steep
+    rows, columns = value.shape
+    slope[:] = 0.0
+    for r in range(1, rows - 1):
+        for c in range(1, columns - 1):
+            here, west, east, south, north = (
+                value[r, c], value[r, c - 1], value[r, c + 1], value[r - 1, c], value[r + 1, c],
+            )  # fmt: skip
+            if here == np.inf:
+                here, west, east, south, north = (
+                    filled[r, c], filled[r, c - 1], filled[r, c + 1], filled[r - 1, c],
+                    filled[r + 1, c],
+                )  # fmt: skip
+            gx = max(0.0, here - min(west, east)) * (1.0 if east < west else -1.0)
+            gy = max(0.0, here - min(south, north)) * (1.0 if north < south else -1.0)
+            steep = math.sqrt(gx * gx + gy * gy)
+            if 0.0 < steep < np.inf:
+                slope[r, c, 0], slope[r, c, 1] = gx / steep, gy / steep
 
 
 @njit(cache=True)
 def direction_at(ahead, x, y):
-    """``descent`` at a point, bilinear between cells where it is known; each is worked out once."""
-    rows, columns = ahead.value.shape
+    """Where the cost-to-go falls at a point, about a unit vector: bilinear where it is known."""
+    value, slope = ahead.value, ahead.slope
+    rows, columns = value.shape
     fx = (x - ahead.x0) / ahead.resolution - 0.5
     fy = (y - ahead.y0) / ahead.resolution - 0.5
     fx, fy = min(max(fx, 0.0), columns - 1.001), min(max(fy, 0.0), rows - 1.001)
@@ -238,17 +137,16 @@ def direction_at(ahead, x, y):
     ux = uy = weight = 0.0
     for i in range(2):
         for j in range(2):
-            if ahead.value[r + i, c + j] < np.inf:
-                cell = ahead.slope[r + i, c + j]
-                if math.isnan(cell[0]):
-                    cell[0], cell[1] = descent(ahead, r + i, c + j)
+            row, column = np.uint64(r + i), np.uint64(c + j)
+            if value[row, column] < np.inf:
                 w = (b if i else 1.0 - b) * (a if j else 1.0 - a)
-                ux += w * cell[0]
-                uy += w * cell[1]
+                ux += w * slope[row, column, 0]
+                uy += w * slope[row, column, 1]
                 weight += w
     if weight > 0.05:
         return ux, uy
-    return descent(ahead, r + (b > 0.5), c + (a > 0.5))
+    row, column = r + (b > 0.5), c + (a > 0.5)
+    return slope[row, column, 0], slope[row, column, 1]
 
 
 @njit(cache=True)
@@ -258,7 +156,7 @@ def trace(ahead, x, y, line):
     for k in range(len(line)):
         line[k, 0], line[k, 1] = x, y
         ux, uy = direction_at(ahead, x, y)
-        steep = math.hypot(ux, uy)
+        steep = math.sqrt(ux * ux + uy * uy)
         if steep < 1e-9 or value_at(ahead, x, y) < 2.0 * h:
             return k + 1
         x, y = x + h * ux / steep, y + h * uy / steep

@@ -68,13 +68,12 @@ def farthest(v, limits, t):
 
 
 @njit(cache=True)
-def follow(scene, limits, comfort, pose, v, clear):
+def follow(field, limits, comfort, pose, v, clear):
     """Speeds that follow the descent of the cost-to-go from a pose with clearance ``clear`` (m).
 
     The robot steers by the descent where it will be once its turning rate has changed, and slows
     down for the bend where it could stop.
     """
-    field = scene.cost_to_go
     off = turn_to_descent(field, pose, 0.5 * v * limits.omega_max / limits.omega_accel)
     bend = turn_to_descent(field, pose, 0.5 * v * abs(v) / limits.v_brake)
     rate = min(limits.omega_max, 3.0 * abs(off), math.sqrt(1.6 * limits.omega_brake * abs(off)))
@@ -85,10 +84,10 @@ def follow(scene, limits, comfort, pose, v, clear):
 
 
 @njit(cache=True)
-def tail_speeds(scene, limits, comfort, pose, v, clear, tail):
+def tail_speeds(field, limits, comfort, pose, v, clear, tail):
     """The speeds that a tail asks for at a pose."""
     if tail == FOLLOW:
-        return follow(scene, limits, comfort, pose, v, clear)
+        return follow(field, limits, comfort, pose, v, clear)
     if tail == BACK:
         return limits.v_min, 0.0
     return 0.0, 0.0
@@ -106,66 +105,82 @@ def touches(people, k, x, y, radius):
 
 
 @njit(cache=True)
+def within(field, x, y):
+    """Whether a point lies where the cost-to-go is known: inside the local map but for its rim."""
+    rows, columns = field.value.shape
+    c, r = (x - field.x0) / field.resolution, (y - field.y0) / field.resolution
+    return 2.0 <= c <= columns - 2.0 and 2.0 <= r <= rows - 2.0
+
+
+@njit(cache=True)
 def future(scene, rules, state, manoeuvre, gauge, terms, worst):
     """Writes the terms of a manoeuvre, and returns SCORED, DROPPED or TOUCHED.
 
     ``manoeuvre`` is (v, omega, held steps, tail, whether it has to pass clear of everybody);
     ``gauge`` is (the cost-to-go now, the most progress that could be made (m), the least score that
     is of interest); ``worst`` (m, hypotheses) is room for the risk. DROPPED at contact while the
-    sample is held, and where it can no longer score enough.
+    sample is held, and where it can no longer score enough. Beyond the local map the cost-to-go is
+    taken to go on falling as it fell last.
     """
     body, limits, span, weights = rules.body, rules.limits, rules.span, rules.weights
     asked_v, asked_omega, held, tail, has_to_pass = manoeuvre
     begin, scale, enough = gauge
+    field, obstacles, margin, people = scene.cost_to_go, scene.obstacles, scene.margin, scene.people
     pose, v, omega = state
-    gap = least_clearance(scene.obstacles, body, pose) - scene.margin
+    gap = least_clearance(obstacles, body, pose) - margin
     need = min(0.0, gap) - SLACK
     between = span.horizon_steps // LOOKS
     most = BEST_GAIN * limits.v_max * span.step * between
-    people = len(scene.people.now) > 0
+    among_people = len(people.now) > 0
     worst[:] = 0.0
-    clear, gained, here, looks = gap, 0.0, begin, 0
+    clear, gained, here, fell, looks = gap, 0.0, begin, 0.0, 0
     terms[DIST], terms[VEL], terms[SIMI] = 1.0, vel(asked_v, limits.v_max), 0.0
-    blocked = False
+    blocked = gone = False
     last = span.horizon_steps
     k = 0
     while k < last:
         stride = 1 if k < span.steps else min(2, last - k)
         wanted_v, wanted_omega = asked_v, asked_omega
         if k >= held:
-            wanted_v, wanted_omega = tail_speeds(scene, limits, span.comfort, pose, v, gap, tail)
-        if not blocked and (v != 0.0 or omega != 0.0 or wanted_v != 0.0 or wanted_omega != 0.0):
+            wanted_v, wanted_omega = tail_speeds(field, limits, span.comfort, pose, v, gap, tail)
+        moves = v != 0.0 or omega != 0.0 or wanted_v != 0.0 or wanted_omega != 0.0
+        if moves and not blocked and not gone:
             duration = span.step * stride
             pose, v, omega = driven(pose, v, omega, wanted_v, wanted_omega, limits, duration)
-            gap = least_clearance(scene.obstacles, body, pose) - scene.margin
-            if gap < need:
+            gone = not within(field, pose[0], pose[1])
+            gap = least_clearance(obstacles, body, pose) - margin
+            if gap < need and not gone:
                 if k < span.steps:
                     return DROPPED
                 blocked = True
         if k < span.steps:
             clear = min(clear, gap)
         k += stride
-        if people:
-            if has_to_pass and touches(scene.people, k - 1, pose[0], pose[1], body.circumscribed):
+        if among_people:
+            if has_to_pass and touches(people, k - 1, pose[0], pose[1], body.circumscribed):
                 return TOUCHED
             t = k * span.step
-            note_risk(scene.people, k - 1, t, pose[0], pose[1], span.risk_radius, worst)
+            note_risk(people, k - 1, t, pose[0], pose[1], span.risk_radius, worst)
         if k == span.steps:
             terms[DIST] = dist(clear, span.comfort)
         if looks < LOOKS and k >= (looks + 1) * between:
             looks += 1
-            here = pose_value(scene.cost_to_go, limits, pose, v)
+            if not gone:
+                before, here = here, pose_value(field, limits, pose, v)
+                fell = before - here
+            else:
+                here -= fell
             gained += begin - here
             left = LOOKS - looks
             at_best = gained + left * (begin - here) + 0.5 * left * (left + 1) * most
             terms[HEADING] = progress(at_best, LOOKS * scale)
-            terms[RISK] = risk(scene.people, worst)
+            terms[RISK] = risk(people, worst)
             if objective(weights, terms) < enough:
                 return DROPPED
-        elif people and k % 8 == 0:
-            terms[RISK] = risk(scene.people, worst)
+        elif among_people and k % 8 == 0:
+            terms[RISK] = risk(people, worst)
             if objective(weights, terms) < enough:
                 return DROPPED
     terms[HEADING] = progress(gained, LOOKS * scale)
-    terms[RISK] = risk(scene.people, worst)
+    terms[RISK] = risk(people, worst)
     return SCORED

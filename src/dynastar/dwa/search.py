@@ -72,8 +72,10 @@ def search(scene, rules, state, n, buffers):
     gap = least_clearance(scene.obstacles, rules.body, pose) - scene.margin
     samples[n] = scene.last.v, scene.last.omega
     if scene.last.hold < 0.5 * span.step:
-        samples[n] = tail_speeds(scene, limits, span.comfort, pose, v, gap, scene.last.tail)
-    samples[n + 1] = tail_speeds(scene, limits, span.comfort, pose, v, gap, FOLLOW)
+        samples[n] = tail_speeds(
+            scene.cost_to_go, limits, span.comfort, pose, v, gap, scene.last.tail
+        )
+    samples[n + 1] = tail_speeds(scene.cost_to_go, limits, span.comfort, pose, v, gap, FOLLOW)
     fastest = samples[:n, 0].max()
     best, best_score = -1, -np.inf
     for j in range(n + 2):
@@ -111,7 +113,8 @@ def search(scene, rules, state, n, buffers):
                 if total > score[i]:
                     score[i] = total
                     terms[i] = found
-                    holds[i], tails[i] = held * span.step, tail
+                    holds[i] = scene.last.hold if i == n else held * span.step
+                    tails[i] = tail
         if score[i] > best_score:
             best, best_score = i, score[i]
     return best

@@ -28,7 +28,6 @@ MAX_PATH_BYTES = 2**20
 Floats = npt.NDArray[np.float64]
 
 _FILE = re.compile(r"(?:.*/)?world_(\d{1,6})\.world")
-_MODEL = re.compile(r"<model name='([^']*)'>(.*?)</model>", re.DOTALL)
 _POSE = re.compile(r"\s*<static>1</static>\s*<pose[^>]*>\s*(\S+)\s+(\S+)\s")
 _RADIUS = re.compile(r"<collision.*?<cylinder>\s*<radius>([^<]*)</radius>", re.DOTALL)
 
@@ -70,7 +69,11 @@ def load_barn_worlds(folder: Path) -> Mapping[int, Floats]:
 def read_barn_world(text: str, where: str) -> Floats:
     """The cylinders (n, 3) of a ``.world`` file: x, y and radius in metres; raises DataError."""
     found = []
-    for name, body in _MODEL.findall(text.partition("<state")[0]):
+    for model in text.partition("<state")[0].split("<model name='")[1:]:
+        name, _, rest = model.partition("'>")
+        body, end, _ = rest.partition("</model>")
+        if not end:
+            raise DataError(f"{where}: the model '{name:.40}' does not end")
         if name == "ground_plane":
             continue
         pose, radius = _POSE.match(body), _RADIUS.search(body)

@@ -6,15 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.clearance import lower_bounds
-from dynastar.dwa.cost_to_go import (
-    add_moving,
-    extend,
-    favour,
-    march,
-    trace,
-    travel_cost,
-    value_at,
-)  # fmt: skip
+from dynastar.dwa.cost_to_go import add_moving, descend, favour, trace, travel_cost, value_at
+from dynastar.dwa.marching import extend, march, queue_for
 from dynastar.dwa.scene import CostToGo, DistanceField
 from dynastar.path import Path
 from dynastar.perception import LocalMap
@@ -42,7 +35,7 @@ class Guidance:
         self._margin, self._comfort = margin, comfort
         self._cost, self._filled = np.empty((n, n)), np.empty((n, n))
         self._value, self._slope = np.full((n, n), np.inf), np.empty((n, n, 2))
-        self._keys, self._nodes = np.empty(4 * n * n), np.empty(4 * n * n, np.int64)
+        self._queue = queue_for(n * n)
         self._line, self._count = np.empty((LINE, 2)), 0
         self.reachable = False
         self._field: CostToGo | None = None
@@ -84,14 +77,11 @@ class Guidance:
         row = min(max(int((here[1] - y0) / a), 0), n - 1)
         column = min(max(int((here[0] - x0) / a), 0), n - 1)
         stop = self._nearest_open(row, column, NEAR)
-        seed_row, seed_column, left = self._seed(path, s, x0, y0)
-        march(
-            self._cost, a, (seed_row, seed_column, left), stop, BEYOND, self._value, self._keys,
-            self._nodes,
-        )  # fmt: skip
+        seed = self._seed(path, s, x0, y0)
+        march(self._cost, a, seed, stop, BEYOND, self._value, self._queue)
         self.reachable = bool(np.isfinite(self._value[stop]))
-        extend(self._cost, self._value, a, self._filled)
-        self._slope[:] = np.nan
+        extend(self._value, a, self._filled)
+        descend(self._value, self._filled, self._slope)
         cost_to_go = CostToGo(self._value, self._filled, self._slope, x0, y0, a)
         self._field = cost_to_go
         self._count = trace(cost_to_go, *robot, self._line)

@@ -59,6 +59,21 @@ def free_ranges(
     return low
 
 
+@njit(cache=True, inline="always")
+def bearing(dx, dy):
+    """atan2(dy, dx) without branches, right to ``ARCTAN_ERROR``; 0 at the origin."""
+    up, along = abs(dy), abs(dx)
+    q = min(along, up) / max(max(along, up), 1e-12)
+    s = q * q
+    series = ARCTAN[8]
+    for i in range(7, -1, -1):
+        series = ARCTAN[i] + s * series
+    angle = q * series
+    angle = 0.5 * math.pi - angle if up > along else angle
+    angle = math.pi - angle if dx < 0.0 else angle
+    return -angle if dy < 0.0 else angle
+
+
 @njit(cache=True, fastmath={"nnan", "nsz", "contract"}, error_model="numpy")
 def beams_of(dy, left, resolution, first, per_step, period, last, turns):
     """The beams, in fractions, that a row of cells lies at: ``dy`` and ``left`` m from the sensor.
@@ -66,21 +81,10 @@ def beams_of(dy, left, resolution, first, per_step, period, last, turns):
     ``first`` is the first beam's angle, ``period`` a whole turn in beams; what is beyond ``last`` is
     that. Without branches, so that several cells go at once; the arctangent is right to ``ARCTAN_ERROR``.
     """
-    up = abs(dy)
     per_period = 1.0 / period
     for k in range(turns.size):
         dx = left + np.float64(np.int32(k)) * resolution
-        along = abs(dx)
-        q = min(along, up) / max(max(along, up), 1e-12)
-        s = q * q
-        series = ARCTAN[8]
-        for i in range(7, -1, -1):
-            series = ARCTAN[i] + s * series
-        angle = q * series
-        angle = 0.5 * math.pi - angle if up > along else angle
-        angle = math.pi - angle if dx < 0.0 else angle
-        angle = -angle if dy < 0.0 else angle
-        turn = (angle - first) * per_step
+        turn = (bearing(dx, dy) - first) * per_step
         turns[k] = min(turn - period * math.floor(turn * per_period), last)
 
 

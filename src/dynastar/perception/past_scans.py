@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from dynastar.compiled import njit
 from dynastar.geometry import Pose2D
-from dynastar.perception.local_map_kernels import free_ranges
+from dynastar.perception.local_map_kernels import bearing, free_ranges
 from dynastar.scan import LaserScan
 
 Floats = npt.NDArray[np.float64]
@@ -40,7 +40,7 @@ def seen_free(x: float, y: float, space: SeenFree) -> bool:
             return False
         view = space.views[k]
         dx, dy = x - view[0], y - view[1]
-        turn = (math.atan2(dy, dx) - view[2] - view[3]) / view[4]
+        turn = (bearing(dx, dy) - view[2] - view[3]) / view[4]
         period = 2.0 * math.pi / abs(view[4])
         i = int(turn - period * math.floor(turn / period))
         if i < view[5] and dx * dx + dy * dy < space.ranges[k, i] * space.ranges[k, i]:

@@ -153,7 +153,9 @@ class Tracker:
     def _listed(self) -> list[Track]:
         now, rows = self._stamp, self._rows
         known = rows[:, kernels.T_STATE] != kernels.TENTATIVE
-        fast = np.hypot(rows[:, kernels.T_VX], rows[:, kernels.T_VY]) > self.config.slowest
+        speed = np.hypot(rows[:, kernels.T_VX], rows[:, kernels.T_VY])
+        unsure = kernels.SURE * np.sqrt(rows[:, kernels.T_VV])
+        fast = speed > np.maximum(self.config.slowest, unsure)
         listed = []
         for row in rows[known | fast].tolist():
             x, y, vx, vy = row[kernels.T_X : kernels.T_VY + 1]

@@ -101,8 +101,8 @@ def cast(
     n_edges = 0
     for k in range(len(edges)):
         x0, y0, x1, y1 = edges[k]
-        reach = 0.5 * math.hypot(x1 - x0, y1 - y0) + range_max
-        if math.hypot(0.5 * (x0 + x1) - x, 0.5 * (y0 + y1) - y) <= reach:
+        reach = 0.5 * math.sqrt((x1 - x0) ** 2 + (y1 - y0) ** 2) + range_max
+        if (0.5 * (x0 + x1) - x) ** 2 + (0.5 * (y0 + y1) - y) ** 2 <= reach * reach:
             near_edges[n_edges] = k
             n_edges += 1
     near_discs = np.empty(len(discs), np.int64)
