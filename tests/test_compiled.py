@@ -6,27 +6,41 @@ import pytest
 
 from dynastar import compiled
 
+MAIN = "import sys; from dynastar.cli import main; sys.exit(main(sys.argv[1:]))"
 PLAN = "from dynastar.planning import SearchGrid as G; G([[0, 0]]).search((0, 0), (0, 1), 'jump')"
 
 
 def run(code, cache, *arguments):
-    env = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
+    ours = ("NUMBA_CACHE_DIR", compiled.ANNOUNCE)
+    env = {k: v for k, v in os.environ.items() if k not in ours}
     env["XDG_CACHE_HOME"] = str(cache)
     command = [sys.executable, "-c", code, *arguments]
     return subprocess.run(command, env=env, capture_output=True, text=True, check=True)
 
 
 @pytest.mark.slow
-def test_the_first_use_says_that_it_compiles_and_the_second_does_not(tmp_path):
-    first = run(PLAN, tmp_path)
+def test_the_command_line_says_that_it_compiles_the_first_time_only(tmp_path):
+    map_file = tmp_path / "m.map"
+    map_file.write_text("type octile\nheight 9\nwidth 9\nmap\n" + 9 * (9 * "." + "\n"))
+    plan = ("plan", str(map_file), "--start", "1", "1", "--goal", "7", "5")
+    first = run(MAIN, tmp_path, *plan)
     assert first.stderr.count("dynastar compiles its kernels") == 1
-    assert first.stdout == ""
+    assert "compiles" not in run(MAIN, tmp_path, *plan).stderr
     assert list((tmp_path / "dynastar").rglob("*.nbi"))
-    assert run(PLAN, tmp_path).stderr == ""
-    main = "import sys; from dynastar.cli import main; sys.exit(main(sys.argv[1:]))"
-    cleared = run(main, tmp_path, "warmup", "--clear")
+    cleared = run(MAIN, tmp_path, "warmup", "--clear")
     assert "MB deleted" in cleared.stderr
     assert not (tmp_path / "dynastar").exists()
+
+
+@pytest.mark.slow
+def test_a_program_that_uses_the_library_hears_nothing_of_it(tmp_path):
+    own = "import numba; numba.njit(lambda x: x + 1)(1); "
+    assert run(PLAN + "; " + own, tmp_path).stderr == ""
+    quiet = run(
+        f"import os; os.environ['{compiled.ANNOUNCE}'] = '1'; import dynastar.compiled; {own}",
+        tmp_path,
+    )
+    assert quiet.stderr == ""
 
 
 @pytest.mark.slow

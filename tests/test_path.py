@@ -3,6 +3,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from dynastar.errors import InputError
 from dynastar.path import Path, Trajectory, bends, turning_points
 
 coordinate = st.floats(-50, 50).map(lambda x: round(x, 3))
@@ -95,7 +96,7 @@ def test_a_dense_copy_of_a_line_has_the_same_turning_points():
 
 @pytest.mark.parametrize("points", [[], [(0.0, np.nan)], [(np.inf, 0.0)]])
 def test_a_path_needs_finite_points(points):
-    with pytest.raises(ValueError, match="finite"):
+    with pytest.raises(InputError, match=r"finite|shape"):
         Path(points)
 
 

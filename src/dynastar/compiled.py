@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 ROOM = "dynastar"  # in the user's cache
+ANNOUNCE = "DYNASTAR_ANNOUNCE"  # set by the command line, for its process and its workers
 ABOUT = 200  # compilations that driving takes, all in all
 
 
@@ -60,7 +61,9 @@ class _Announcer(event.Listener):  # type: ignore[misc]
         self._bar: Any = None
 
     def on_start(self, event: Any) -> None:
-        """Before the first, says so; then counts."""
+        """Before the first, says so; then counts. Kernels of others are not ours to speak of."""
+        if not event.data["dispatcher"].py_func.__module__.startswith("dynastar"):
+            return
         if self.done == 0:
             from tqdm import tqdm
 
@@ -78,7 +81,8 @@ class _Announcer(event.Listener):  # type: ignore[misc]
         """Nothing to say."""
 
 
-event.register("numba:compile", _Announcer())
+if ANNOUNCE in os.environ:
+    event.register("numba:compile", _Announcer())
 
 
 @intrinsic

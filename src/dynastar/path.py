@@ -6,6 +6,8 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.errors import InputError
+
 Floats = npt.NDArray[np.float64]
 
 TURN_TOLERANCE = 0.25  # m, of the Douglas-Peucker simplification before bends are counted
@@ -35,15 +37,20 @@ def bends(points: npt.ArrayLike) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """A polyline in the map frame: ``points`` (n >= 1, 2) in metres, ``arc`` (n,) the length so far."""
+    """A polyline in the map frame: ``points`` (n >= 1, 2) in metres, ``arc`` (n,) the length so far.
+
+    Raises InputError for points of another shape or not finite.
+    """
 
     points: Floats
     arc: Floats = field(init=False)
 
     def __post_init__(self) -> None:
-        points = np.array(self.points, dtype=np.float64).reshape(-1, 2)
-        if len(points) == 0 or not np.isfinite(points).all():
-            raise ValueError("a path needs at least one point, all finite")
+        points = np.array(self.points, dtype=np.float64)
+        if points.ndim != 2 or points.shape[1] != 2 or len(points) == 0:
+            raise InputError(f"a path has shape {points.shape}: expected (n >= 1, 2), in metres")
+        if not np.isfinite(points).all():
+            raise InputError("a path has a point that is not finite")
         steps = np.diff(points, axis=0)
         arc = np.concatenate([[0.0], np.cumsum(np.hypot(steps[:, 0], steps[:, 1]))])
         for name, array in (("points", points), ("arc", arc)):

@@ -8,6 +8,8 @@ import numpy.typing as npt
 
 from dynastar.geometry import Pose2D
 
+LEAST_INCREMENT = 1e-5  # rad
+
 
 @dataclass(frozen=True, eq=False)
 class LaserScan:
@@ -49,6 +51,8 @@ class LaserScan:
             return "the scan's stamp, angles or mount are not finite"
         if self.angle_increment == 0.0 or abs(self.angle_increment) * (n - 1) > math.tau + 1e-3:
             return f"the scan's {n} beams at {self.angle_increment:g} rad do not fit in a circle"
+        if abs(self.angle_increment) < LEAST_INCREMENT:
+            return f"the scan's increment is {self.angle_increment:g} rad: expected 1e-5 or more"
         if not (0.0 <= self.range_min < self.range_max < math.inf):
             return f"the scan's ranges run from {self.range_min:g} to {self.range_max:g} m"
         return None

@@ -14,7 +14,7 @@ from dynastar.dwa.scene import AT_REST, FOLLOW, Manoeuvre
 from dynastar.geometry import Pose2D, Twist
 from dynastar.perception import MovingObstacle
 from dynastar.robot import ROBOTS, Footprint, Limits, Robot, arc, slew
-from scenes import STEP, boxed, empty, scene_of
+from scenes import STEP, boxed, empty, field_of, scene_of
 
 PERIOD = 0.1
 LIMITS = Limits(1.0, 1.5, 0.8, 2.0, 0.8, 2.0, v_min=-0.3)
@@ -101,6 +101,22 @@ def test_a_manoeuvre_that_is_carried_on_ends_in_time_though_ticks_are_shorter_th
         holds.append(choice.manoeuvre.hold)
         last = choice.left
     assert holds == pytest.approx(np.arange(0.5, 0.0, -0.05))
+
+
+def test_simi_is_the_mean_closeness_to_the_path_and_draws_the_robot_to_it():
+    line = np.ones((160, 160), bool)
+    line[100] = False  # along y = 5.0 m
+    path = field_of(~line)
+    there = choose(
+        empty(), (1.0, 5.02, 0.0), Twist(0.5, 0.0), goal=(7.0, 5.0), path=path, sigma=1.0
+    )
+    beside = choose(empty(), (1.0, 4.0, 0.0), Twist(0.5, 0.0), path=path, sigma=5.0)
+    simi = there.terms[np.argmax(there.score), 3]
+    assert 0.8 < simi <= 1.0
+    assert beside.terms[np.argmax(beside.score), 3] < simi
+    assert beside.command.omega > 0.1
+    alone = choose(empty(), (1.0, 4.0, 0.0), Twist(0.5, 0.0))
+    assert alone.command.omega < beside.command.omega
 
 
 def risk_of(choice_twist, scene, pose):

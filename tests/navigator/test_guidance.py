@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dynastar.dwa.cost_to_go import value_at
-from dynastar.navigator.guidance import Guidance
+from dynastar.navigator.guidance import Guidance, Lead
 from dynastar.path import Path
 from dynastar.perception import LocalMap, LocalMapConfig, MovingObstacle, PredictionConfig
 from dynastar.perception.prediction import predict
@@ -31,8 +31,8 @@ class Guide:
         self.occupied[r0:r1, c0:c1] = True
 
     def update(self, points, here, s=0.0, people=NOBODY):
-        path = Path(np.array(points, float))
-        return self.guidance.update(self.local_map, self.occupied, path, s, here, people, MEETING)
+        lead = Lead(Path(np.array(points, float)), s)
+        return self.guidance.update(self.local_map, self.occupied, lead, here, people, MEETING)
 
 
 @pytest.mark.parametrize("goal", [(7.0, 5.0), (14.0, 5.0), (5.0, 40.0), (8.0, 8.0), (-20.0, -20.0)])
@@ -58,7 +58,7 @@ def test_it_falls_by_what_is_driven():
 def test_a_wall_off_the_path_is_led_round():
     guide = Guide()
     guide.wall(6.5, 3.5, 6.7, 6.0)
-    _, to_go = guide.update([(5.0, 5.0), (8.5, 5.0)], (5.0, 5.0))
+    _, _, to_go = guide.update([(5.0, 5.0), (8.5, 5.0)], (5.0, 5.0))
     assert guide.guidance.reachable
     shortest = math.dist((5.0, 5.0), (6.6, 6.35)) + math.dist((6.6, 6.35), (8.5, 5.0))
     assert shortest - 0.3 < value_at(to_go, 5.0, 5.0) < 2.0 * shortest
@@ -82,7 +82,7 @@ def test_no_way_within_the_local_map_is_said():
         (5.9, 4.0, 6.0, 6.0),
     ):
         guide.wall(*box)
-    _, to_go = guide.update([(5.0, 5.0), (8.5, 5.0)], (5.0, 5.0))
+    _, _, to_go = guide.update([(5.0, 5.0), (8.5, 5.0)], (5.0, 5.0))
     assert not guide.guidance.reachable
     assert math.isfinite(value_at(to_go, 5.0, 5.0))
 
@@ -90,14 +90,14 @@ def test_no_way_within_the_local_map_is_said():
 def test_who_stands_too_close_to_something_is_led_out():
     guide = Guide()
     guide.wall(4.0, 4.0, 8.0, 4.8)  # 0.2 m beside the robot, which needs 0.3
-    _, to_go = guide.update([(5.0, 5.0), (8.5, 5.5)], (5.0, 5.0))
+    _, _, to_go = guide.update([(5.0, 5.0), (8.5, 5.5)], (5.0, 5.0))
     assert guide.guidance.reachable
     assert value_at(to_go, 5.0, 5.15) < value_at(to_go, 5.0, 5.0)
 
 
 def test_the_line_starts_at_the_robot_and_descends():
     guide = Guide()
-    _, to_go = guide.update([(5.0, 5.0), (9.0, 7.0)], (5.0, 5.0))
+    _, _, to_go = guide.update([(5.0, 5.0), (9.0, 7.0)], (5.0, 5.0))
     line = guide.guidance.line
     assert line[0].tolist() == [5.0, 5.0]
     assert np.hypot(*np.diff(line, axis=0).T) == pytest.approx(guide.guidance.spacing)

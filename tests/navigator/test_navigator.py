@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from driving import LIMITS, PERIOD, REST, ROUND, Drive, room, under_way
-from dynastar.errors import GoalOccupied, NoPath, OutOfMap
+from dynastar.errors import GoalOccupied, InputError, NoPath, OutOfMap
 from dynastar.geometry import Goal
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import Navigator
@@ -49,8 +49,18 @@ def test_a_heading_asked_for_is_turned_to(heading):
 
 
 def test_a_goal_that_is_not_finite_is_an_error():
-    with pytest.raises(ValueError, match="expected finite numbers"):
+    with pytest.raises(InputError, match="expected finite numbers"):
         Drive(room()).navigator.set_goal(Goal(math.nan, 1.0))
+
+
+def test_arrived_is_said_by_a_robot_that_rests_within_the_tolerance():
+    for start in ((1.5, 3.0, 0.0), (6.4, 1.0, 1.0), (3.0, 5.0, -2.0)):
+        drive = Drive(room(), pose=start)
+        drive.navigator.set_goal(Goal(4.5, 3.2))
+        drive.until("arrived")
+        while drive.twist != REST:
+            drive.tick()
+        assert math.dist(drive.pose[:2], (4.5, 3.2)) <= 0.25 + 1e-6
 
 
 def test_no_goal_is_idle():

@@ -26,7 +26,7 @@ def room(values=None, yaw=0.0, **masks):
 
 
 def mapped(grid=None, config=CONFIG):
-    return PlanningMap(room() if grid is None else grid, config, 0.3, 0.25)
+    return PlanningMap(room() if grid is None else grid, config, (0.3, 0.25))
 
 
 def local_map_showing(state, x0, y0, x1, y1, centre=(4.0, 3.0), frame=None):

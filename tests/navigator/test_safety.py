@@ -29,7 +29,7 @@ def test_forgetting_frees_nothing():
     for k in range(21):
         local_map = tick(0.1 * k, 2.0 + 0.05 * k)
     before, origin = local_map.open.copy(), local_map.origin
-    navigator.sensing.forget()
+    navigator.sensing.local_map.forget()
     local_map = tick(2.1, 3.0)
     assert local_map.origin == origin
     assert not (local_map.open & ~before & 1).any()

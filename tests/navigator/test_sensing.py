@@ -1,12 +1,13 @@
 """States and scans that are not what they should be, and what the navigator makes of them."""
 
 import math
+import time
 
 import numpy as np
 import pytest
 
 from driving import LIMITS, PERIOD, REST, Drive, room, under_way, with_ranges
-from dynastar.geometry import Goal
+from dynastar.geometry import Goal, Pose2D
 from dynastar.navigator import RobotState
 from dynastar.robot import Lidar, arc, stopping_time
 from dynastar.simulation.lidar import LidarSimulator
@@ -145,3 +146,38 @@ def test_sensor_loss_stops_along_the_arc_in_the_stopping_time_and_goes_on_afterw
     assert math.dist(drive.pose[:2], expected[:2]) < 0.02
     assert drive.pose.theta == pytest.approx(expected.theta, abs=0.05)
     drive.until("arrived")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda scan: [None], "a scan is None"),
+        (lambda scan: ["scan"], "a scan is"),
+        (lambda scan: [with_ranges(scan, scan.ranges, angle_increment=1e-8)], "increment"),
+        (lambda scan: [with_ranges(scan, scan.ranges, angle_increment=0.0)], "fit in a circle"),
+        (lambda scan: [with_ranges(scan, scan.ranges, range_max=math.inf)], "ranges run from"),
+        (lambda scan: [with_ranges(scan, np.full(360, 1e30))], "no valid range"),
+    ],
+)
+def test_what_is_no_scan_brakes_and_says_so_in_time(change, words):
+    drive = under_way()
+    began = time.perf_counter()
+    for _ in range(5):
+        before = drive.twist.v
+        command = drive.tick(*change(drive.scan()))
+    assert time.perf_counter() - began < 0.5
+    assert command.v < before
+    assert drive.status.state == "sensor_lost"
+    assert words in drive.status.reason
+    drive.tick()
+    assert drive.status.state != "sensor_lost"
+
+
+@pytest.mark.parametrize("far", [1e4, 1e18, -1e300])
+def test_one_pose_far_off_the_map_ends_nothing(far):
+    drive = under_way()
+    away = drive.state._replace(pose=Pose2D(far, 3.0, 0.0))
+    command = drive.navigator.command(away, drive.scan())
+    assert 0.0 <= command.v <= drive.twist.v
+    drive.carry_out(command)
+    assert "arrived" in drive.until("arrived")

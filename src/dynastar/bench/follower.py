@@ -8,7 +8,7 @@ from dynastar.bench.speed_profile import SpeedProfile, bend_speed, points
 from dynastar.errors import PlanningError
 from dynastar.geometry import Goal, Twist, wrap_angle
 from dynastar.grid import OccupancyGrid
-from dynastar.navigator import Navigator, NavigatorConfig, RobotState, Status
+from dynastar.navigator import Navigator, NavigatorConfig, RobotState, State, Status
 from dynastar.path import Path
 from dynastar.robot import Robot, slew
 
@@ -101,7 +101,7 @@ class Follower:
             slew(state.twist.omega, omega, limits.omega_accel, limits.omega_brake, period),
         )
 
-    def _say(self, state: str, reason: str) -> None:
+    def _say(self, state: State, reason: str) -> None:
         self.status = replace(
             self.status, state=state, reason=reason, goals_left=len(self._goals), error=None
         )

@@ -147,7 +147,7 @@ class DynamicWindow:
         if best >= 0:
             v, omega = samples[best].tolist()
             chosen = Manoeuvre(v, omega, float(holds[best]), int(tails[best]))
-            left = chosen._replace(hold=chosen.hold - self.period)
+            left = chosen._replace(hold=max(chosen.hold - self.period, 0.0))
         return Choice(
             command,
             chosen,

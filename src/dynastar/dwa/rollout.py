@@ -11,7 +11,7 @@ from dynastar.compiled import njit
 from dynastar.dwa.clearance import distance_at
 from dynastar.dwa.cost_to_go import direction_at, value_at
 from dynastar.dwa.motion import driven
-from dynastar.dwa.objective import dist, note_risk, objective, progress, risk, vel
+from dynastar.dwa.objective import dist, note_risk, objective, progress, risk, simi, vel
 from dynastar.dwa.scene import BACK, FOLLOW
 
 HEADING, DIST, VEL, SIMI, RISK = range(5)
@@ -20,6 +20,7 @@ SLACK = (
     0.02  # m that a roll-out may come nearer to an obstacle than the robot is, inside the margin
 )
 OVERSHOOT = 0.25  # m that the robot may stop beyond the end of its path
+STRAY = 1.0  # m from the path that make it no path any more
 LOOKS = 8  # times at which the cost-to-go is looked up along a roll-out
 BEST_GAIN = 2.0  # decrease of the cost-to-go over a metre, at most, for what is worth looking at
 
@@ -104,6 +105,13 @@ def touches(people, k, x, y, radius):
     return False
 
 
+@njit(cache=True, inline="always")
+def weights_of(rules, scene):
+    """The weights of Eq. 9; a path that was given is kept to by at least ``scene.sigma``."""
+    alpha, beta, gamma, sigma, rho = rules.weights
+    return alpha, beta, gamma, max(sigma, scene.sigma), rho
+
+
 @njit(cache=True)
 def within(field, x, y):
     """Whether a point lies where the cost-to-go is known: inside the local map but for its rim."""
@@ -122,7 +130,8 @@ def future(scene, rules, state, manoeuvre, gauge, terms, worst):
     sample is held, and where it can no longer score enough. Beyond the local map the cost-to-go is
     taken to go on falling as it fell last.
     """
-    body, limits, span, weights = rules.body, rules.limits, rules.span, rules.weights
+    body, limits, span = rules.body, rules.limits, rules.span
+    weights = weights_of(rules, scene)
     asked_v, asked_omega, held, tail, has_to_pass = manoeuvre
     begin, scale, enough = gauge
     field, obstacles, margin, people = scene.cost_to_go, scene.obstacles, scene.margin, scene.people
@@ -134,7 +143,8 @@ def future(scene, rules, state, manoeuvre, gauge, terms, worst):
     among_people = len(people.now) > 0
     worst[:] = 0.0
     clear, gained, here, fell, looks = gap, 0.0, begin, 0.0, 0
-    terms[DIST], terms[VEL], terms[SIMI] = 1.0, vel(asked_v, limits.v_max), 0.0
+    terms[DIST], terms[VEL], terms[SIMI] = 1.0, vel(asked_v, limits.v_max), 1.0
+    strayed = 0.0
     blocked = gone = False
     last = span.horizon_steps
     k = 0
@@ -171,6 +181,9 @@ def future(scene, rules, state, manoeuvre, gauge, terms, worst):
             else:
                 here -= fell
             gained += begin - here
+            if weights[SIMI] > 0.0:
+                strayed += min(distance_at(scene.path, pose[0], pose[1]), STRAY) / LOOKS
+                terms[SIMI] = simi(strayed, STRAY)
             left = LOOKS - looks
             at_best = gained + left * (begin - here) + 0.5 * left * (left + 1) * most
             terms[HEADING] = progress(at_best, LOOKS * scale)

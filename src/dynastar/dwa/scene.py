@@ -50,7 +50,8 @@ class Scene(NamedTuple):
     ``closed`` are distances to what is not observed free, ``obstacles`` to what is occupied.
     ``margin`` (m) is kept from both, ``kept`` from the former where the robot stands nearer than
     that. ``ahead`` (s) is when a command given now acts, ``last`` what is left of the manoeuvre that
-    was chosen last, ``v_cap`` (m/s) the speed limit.
+    was chosen last, ``v_cap`` (m/s) the speed limit. ``path`` are distances to the path ahead, and
+    ``sigma`` the least weight of keeping to it.
     """
 
     closed: DistanceField
@@ -63,3 +64,5 @@ class Scene(NamedTuple):
     ahead: float
     last: Manoeuvre
     v_cap: float
+    path: DistanceField
+    sigma: float

@@ -19,6 +19,7 @@ from dynastar.dwa.rollout import (
     least_clearance,
     pose_value,
     tail_speeds,
+    weights_of,
 )
 from dynastar.dwa.scene import BACK, FOLLOW
 
@@ -76,12 +77,12 @@ def search(scene, rules, state, n, buffers):
             scene.cost_to_go, limits, span.comfort, pose, v, gap, scene.last.tail
         )
     samples[n + 1] = tail_speeds(scene.cost_to_go, limits, span.comfort, pose, v, gap, FOLLOW)
-    fastest = samples[:n, 0].max()
+    slowest, fastest = samples[:n, 0].min(), samples[:n, 0].max()
     best, best_score = -1, -np.inf
     for j in range(n + 2):
         i = j - 2 if j > 1 else n + j
         score[i] = -np.inf
-        samples[i, 0] = min(samples[i, 0], fastest)
+        samples[i, 0] = min(max(samples[i, 0], slowest), fastest)
         sample = (samples[i, 0], samples[i, 1])
         commands[i, 0] = slew(v, sample[0], limits.v_accel, limits.v_brake, period)
         commands[i, 1] = slew(omega, sample[1], limits.omega_accel, limits.omega_brake, period)
@@ -109,7 +110,7 @@ def search(scene, rules, state, n, buffers):
             if outcome != TOUCHED:
                 refused[i] = ADMISSIBLE
             if outcome == SCORED:
-                total = objective(rules.weights, found) - change
+                total = objective(weights_of(rules, scene), found) - change
                 if total > score[i]:
                     score[i] = total
                     terms[i] = found

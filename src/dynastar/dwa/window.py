@@ -8,10 +8,11 @@ from dynastar.dwa.motion import slew
 def dynamic_window(v, omega, limits, v_cap, span):
     """Eqs. 5 and 6: the speeds within the limits that are reached in ``span`` seconds.
 
-    Returns (lowest v, highest v, lowest omega, highest omega); v is capped at ``v_cap``.
+    Returns (lowest v, highest v, lowest omega, highest omega); |v| is capped at ``v_cap``.
     """
-    low_v = slew(v, limits.v_min, limits.v_accel, limits.v_brake, span)
-    high_v = slew(v, max(v_cap, limits.v_min), limits.v_accel, limits.v_brake, span)
+    slowest, fastest = max(limits.v_min, -v_cap), max(v_cap, limits.v_min)
+    low_v = slew(v, slowest, limits.v_accel, limits.v_brake, span)
+    high_v = slew(v, fastest, limits.v_accel, limits.v_brake, span)
     low_w = slew(omega, -limits.omega_max, limits.omega_accel, limits.omega_brake, span)
     high_w = slew(omega, limits.omega_max, limits.omega_accel, limits.omega_brake, span)
     return min(low_v, high_v), max(low_v, high_v), min(low_w, high_w), max(low_w, high_w)

@@ -2,7 +2,7 @@
 
 from dynastar.navigator.config import PRESETS, NavigatorConfig, configured
 from dynastar.navigator.navigator import Navigator
-from dynastar.navigator.status import STATES, RobotState, Status
+from dynastar.navigator.status import STATES, RobotState, State, Status
 
 __all__ = [
     "PRESETS",
@@ -10,6 +10,7 @@ __all__ = [
     "Navigator",
     "NavigatorConfig",
     "RobotState",
+    "State",
     "Status",
     "configured",
 ]

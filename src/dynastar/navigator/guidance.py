@@ -1,7 +1,9 @@
 """The cost-to-go over the local map, joined to the global path's remaining length."""
 
 import math
+from typing import NamedTuple
 
+import cv2
 import numpy as np
 import numpy.typing as npt
 
@@ -20,7 +22,19 @@ FACTOR = 2  # cells of the local map to one of the cost-to-go
 FAVOUR = 0.85  # of the cost along the line that was followed before, so that it is kept to
 LINE = 50  # points of that line
 BEYOND = 3.0  # m that the cost-to-go is known beyond the robot
+BESIDE = 6.0  # extra cost of a metre 1 m or more beside a path that is kept to
 NEAR = 6  # cells to the nearest one where the robot fits, at most
+
+
+class Lead(NamedTuple):
+    """The path that leads a robot, ``s`` (m) along it.
+
+    With ``ahead`` (m) finite it is kept to, and only so much of it counts.
+    """
+
+    path: Path
+    s: float
+    ahead: float = math.inf
 
 
 class Guidance:
@@ -53,13 +67,12 @@ class Guidance:
         self,
         local_map: LocalMap,
         occupied: npt.NDArray[np.bool_],
-        path: Path,
-        s: float,
+        lead: Lead,
         here: Point,
         people: People,
         meeting: tuple[float, float, float, float],
-    ) -> tuple[DistanceField, CostToGo]:
-        """Distances to obstacles and the cost-to-go for a robot at ``here``, ``s`` m along its path.
+    ) -> tuple[DistanceField, DistanceField, CostToGo]:
+        """Distances to obstacles and to the path ahead, and the cost-to-go, for a robot at ``here``.
 
         ``occupied`` (n, n) are the local map's cells with obstacles. ``meeting`` says when and how
         the robot meets moving obstacles: the predictions' begin and step (s), its speed (m/s), its
@@ -70,6 +83,9 @@ class Guidance:
         resolution = local_map.config.resolution
         obstacles = lower_bounds((~occupied).view(np.uint8), resolution)
         travel_cost(obstacles, FACTOR, self._margin, self._comfort, self._cost)
+        beside = self._distances_to(lead, x0, y0)
+        if lead.ahead < math.inf:
+            self._cost += BESIDE * np.minimum(beside.distance, 1.0)
         begin, step, speed, radius = meeting
         robot = (float(here[0]), float(here[1]))
         add_moving(self._cost, (a, x0, y0), people, (begin, step), robot, radius, speed)
@@ -77,7 +93,7 @@ class Guidance:
         row = min(max(int((here[1] - y0) / a), 0), n - 1)
         column = min(max(int((here[0] - x0) / a), 0), n - 1)
         stop = self._nearest_open(row, column, NEAR)
-        seed = self._seed(path, s, x0, y0)
+        seed = self._seed(lead, x0, y0)
         march(self._cost, a, seed, stop, BEYOND, self._value, self._queue)
         self.reachable = bool(np.isfinite(self._value[stop]))
         extend(self._value, a, self._filled)
@@ -85,13 +101,23 @@ class Guidance:
         cost_to_go = CostToGo(self._value, self._filled, self._slope, x0, y0, a)
         self._field = cost_to_go
         self._count = trace(cost_to_go, *robot, self._line)
-        return DistanceField(obstacles, x0, y0, resolution), cost_to_go
+        return DistanceField(obstacles, x0, y0, resolution), beside, cost_to_go
 
-    def _seed(self, path: Path, s: float, x0: float, y0: float) -> tuple[int, int, float]:
+    def _distances_to(self, lead: Lead, x0: float, y0: float) -> DistanceField:
+        """Distances (m) to the part of the path that lies ahead in the local map."""
+        a = self.spacing
+        points = lead.path.resampled(lead.s, lead.s + min(lead.ahead, a * len(self._cost)), a)
+        cells = np.round((points - (x0, y0)) / a - 0.5).astype(np.int32)
+        off = np.ones(self._cost.shape, np.uint8)
+        cv2.polylines(off, [cells], False, 0)
+        return DistanceField(lower_bounds(off, a), x0, y0, a)
+
+    def _seed(self, lead: Lead, x0: float, y0: float) -> tuple[int, int, float]:
         """The cell where the path leaves the local map, or ends, and the length (m) left from there."""
-        a, n = self.spacing, len(self._cost)
-        points = path.resampled(s, path.length, 0.5 * a)
-        left = np.linspace(path.length - s, 0.0, len(points))
+        a, n, path, s = self.spacing, len(self._cost), lead.path, lead.s
+        end = min(path.length, s + lead.ahead)
+        points = path.resampled(s, end, 0.5 * a)
+        left = np.linspace(path.length - s, path.length - end, len(points))
         cells = np.floor((points - (x0, y0)) / a).astype(int)
         out = np.flatnonzero(~((cells >= 2) & (cells < n - 2)).all(axis=1))
         last = len(points) - 1 if len(out) == 0 else max(int(out[0]) - 1, 0)

@@ -11,10 +11,11 @@ from dynastar.grid import OccupancyGrid
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.planning_map_kernels import cells_under, stands_under, take_over
 from dynastar.perception import Known, LocalMap
-from dynastar.planning import GridPlanner, Plan
+from dynastar.planning import GridPlanner, Plan, Planner, plan_by
 
 Mask = npt.NDArray[np.bool_]
 Cells = npt.NDArray[np.int64]
+Point = tuple[float, float]
 Window = tuple[Cells, Cells, Cells]
 
 LONGER = 1.03  # times the tightest plan's length, a plan with room to spare is too long
@@ -23,12 +24,17 @@ LONGER = 1.03  # times the tightest plan's length, a plan with room to spare is 
 class PlanningMap:
     """Plans on the map and the obstacles seen, with room to spare where there is room.
 
-    One planner keeps ``comfort`` more clearance than the footprint needs; where it finds no way, or
-    only a longer one, the plan is the other's, which keeps what a certified stop needs and no more.
+    One planner keeps ``comfort`` more clearance than the first of ``radii`` (m), one that, and one the
+    second. Where a roomier finds no way, or only a longer one, the plan is that of the next. A
+    ``planner`` given is asked in their place, for the same radii.
     """
 
     def __init__(
-        self, grid: OccupancyGrid, config: NavigatorConfig, radius: float, tight: float
+        self,
+        grid: OccupancyGrid,
+        config: NavigatorConfig,
+        radii: tuple[float, float],
+        planner: Planner | None = None,
     ) -> None:
         factor = math.ceil(grid.resolution / config.planning_resolution - 1e-9)
         self.grid = grid.refined(factor)
@@ -37,8 +43,10 @@ class PlanningMap:
         self._unknown = self.grid.unknown
         if self.grid.keepout is not None:
             self._unknown = self._unknown & ~self.grid.keepout
-        radii = sorted({radius + config.comfort, radius, tight}, reverse=True)
-        self.planners = [GridPlanner(self.grid, r, config.unknown, config.planner) for r in radii]
+        roomy, tight = radii
+        widths = sorted({roomy + config.comfort, roomy, tight}, reverse=True)
+        self.planners = [GridPlanner(self.grid, r, config.unknown, config.planner) for r in widths]
+        self._planner = planner
         self.seen = np.zeros(self.prior.shape, np.bool_)
         self.cleared = np.zeros(self.prior.shape, np.bool_)
         self._marks = np.zeros(self.prior.shape, np.uint8)
@@ -84,16 +92,16 @@ class PlanningMap:
         if len(rows):
             self._mark(rows.min(), rows.max() + 1, columns.min(), columns.max() + 1)
 
-    def plan(self, start: tuple[float, float], goal: tuple[float, float], explored: bool) -> Plan:
+    def plan(self, start: Point, goal: Point, explored: bool) -> Plan:
         """The roomiest plan that is as short as any; raises what the tightest planner raises.
 
         A start too close to something for a roomy planner has to be led out of that by a way that
         the tightest can follow.
         """
-        tight = self.planners[-1].plan(start, goal, explored=explored)
+        tight = self._ask(self.planners[-1], start, goal, explored)
         for planner in self.planners[:-1]:
             try:
-                plan = planner.plan(start, goal, explored=explored)
+                plan = self._ask(planner, start, goal, explored)
             except (NoPath, GoalOccupied, StartOccupied):
                 continue
             if plan.path.length > LONGER * tight.path.length:
@@ -102,6 +110,13 @@ class PlanningMap:
             if plan.clear_from == 0.0 or self.blocked_at(lead) is None:
                 return plan
         return tight
+
+    def _ask(self, planner: GridPlanner, start: Point, goal: Point, explored: bool) -> Plan:
+        """A plan of a planner's width, by that planner or by the one that stands in for all."""
+        if self._planner is None:
+            return planner.plan(start, goal, explored=explored)
+        grid = OccupancyGrid(self.blocked.astype(np.int8) * 100, self.frame)
+        return plan_by(self._planner, grid, start, goal, planner.radius)
 
     def blocked_at(self, points: npt.NDArray[np.float64]) -> float | None:
         """Metres along a polyline (n, 2) to where even the tightest planner could not go."""

@@ -18,6 +18,8 @@ from dynastar.robot import Robot
 from dynastar.scan import LaserScan
 
 SEEN_NOW = 0.15  # s that a cell counts as in view after it was seen
+RANGES_UP_TO = 1.001  # times range_max
+FARTHEST = 1e6  # m from the map's origin, where positions still tell cells apart
 SAME_PLACE = 0.05  # m within which a robot may get the same ranges again
 HISTORY = 2.0  # s of poses kept to place scans by
 
@@ -48,12 +50,6 @@ class Sensing:
         """The map, for its keep-out cells and for what stands at the start."""
         self.local_map.set_grid(grid)
 
-    def forget(self) -> None:
-        """Drops what was seen, but for what was seen free where the robot stands."""
-        here = self._poses[-1].pose
-        self.local_map.forget(here.x, here.y, self._own_disc)
-        self.tracker.forget()
-
     @property
     def _own_disc(self) -> float:
         """The radius (m) that is free at the start and not forgotten: the robot, and its blind range."""
@@ -67,6 +63,10 @@ class Sensing:
         """Takes in where the robot is; what is wrong with that, in words, or None."""
         if not all(math.isfinite(number) for number in (state.stamp, *state.pose, *state.twist)):
             return "the robot's state is not finite"
+        if max(abs(state.pose.x), abs(state.pose.y)) > FARTHEST:
+            return (
+                f"the robot's pose is ({state.pose.x:g}, {state.pose.y:g}): expected within 1e6 m"
+            )
         if self._poses:
             last = self._poses[-1]
             dt = state.stamp - last.stamp
@@ -74,7 +74,7 @@ class Sensing:
                 return f"time went back by {-dt:.3f} s"
             if self._jumped(last, state, dt):
                 self._poses.clear()
-                self.local_map.forget(0.0, 0.0, 0.0)
+                self.local_map.forget()
                 self.tracker.forget()
                 self._jumped_to = state.pose
         self._poses.append(state)
@@ -87,6 +87,9 @@ class Sensing:
         """Takes in the scans that are new; what makes the data unusable, in words, or None."""
         fault, ahead = None, 0.0
         for scan in scans:
+            if not isinstance(scan, LaserScan):
+                fault = f"a scan is {scan!r:.40}: expected a LaserScan"
+                continue
             wrong = scan.fault(self._beams.get(scan.mount))
             if wrong is None and scan.stamp > now + 0.5 * self.config.period:
                 wrong = f"the scan is {scan.stamp - now:.3f} s ahead of the robot's state"
@@ -135,7 +138,8 @@ class Sensing:
     def _without_news(self, scan: LaserScan) -> str | None:
         """Why a scan tells nothing, in words: no valid range, or the last one again while moving."""
         ranges = np.asarray(scan.ranges)
-        if np.isnan(ranges).all():
+        beyond = (ranges > RANGES_UP_TO * scan.range_max) & (ranges != np.inf)
+        if (np.isnan(ranges) | beyond).all():
             return "the scan has no valid range"
         here = self._poses[-1].pose
         last, there = self._taken.get(scan.mount, (None, here))

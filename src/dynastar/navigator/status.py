@@ -1,7 +1,7 @@
 """What goes into a navigator and what it tells: the robot's state, and the status of a tick."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 from dynastar.dwa.dwa import Choice
 from dynastar.errors import PlanningError
@@ -10,10 +10,11 @@ from dynastar.grid import GridFrame
 from dynastar.perception import Track
 from dynastar.planning import Plan
 
-STATES = (
+State = Literal[
     "idle", "following", "avoiding", "waiting", "turning", "recovering", "arrived", "blocked",
     "sensor_lost",
-)  # fmt: skip
+]  # fmt: skip
+STATES: tuple[State, ...] = get_args(State)
 
 
 class RobotState(NamedTuple):
@@ -28,12 +29,12 @@ class RobotState(NamedTuple):
 class Status:
     """What the navigator is doing and why, and what its last tick considered.
 
-    ``state`` is one of ``STATES``. ``plan_id`` rises with every new plan; the plan's cells belong to
-    ``planning_frame``. ``limited_by`` says what kept the last command from being faster, ``error``
-    why no plan could be made, if that is what stopped it.
+    ``plan_id`` rises with every new plan; the plan's cells belong to ``planning_frame``. ``replans``
+    counts plans after the first for a goal. ``limited_by`` says what kept the last command from being
+    faster, ``error`` why no plan could be made, if that is what stopped it.
     """
 
-    state: str = "idle"
+    state: State = "idle"
     reason: str = "no goal"
     replans: int = 0
     recoveries: int = 0

@@ -55,14 +55,9 @@ class LocalMap:
         self._grid = grid
         self._bar()
 
-    def forget(self, x: float, y: float, radius: float) -> None:
-        """Turns the window into unseen, but for what was seen free in the disc round the robot."""
-        kept = self.free_at.copy()
-        kernels.mark_disc(
-            kept, *self.origin, self.config.resolution, x, y, radius, math.nan, math.inf
-        )
-        inside = np.isnan(kept) & (self.free_at > self.hit_at)
-        self.free_at[~inside] = kernels.NEVER
+    def forget(self) -> None:
+        """Turns all of the window into unseen."""
+        self.free_at.fill(kernels.NEVER)
         self.hit_at.fill(kernels.NEVER)
 
     def follow(self, x: float, y: float) -> None:

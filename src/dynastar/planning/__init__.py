@@ -1,6 +1,7 @@
 """Global planning (section III): searches, the improved heuristic, smoothing."""
 
 from dynastar.planning.any_angle import straighten
+from dynastar.planning.foreign import Planner, plan_by
 from dynastar.planning.heuristic import PLANNERS, HeuristicConfig
 from dynastar.planning.planner import GridPlanner, Plan, PlannerConfig, plan, warm_up, warm_up_rest
 from dynastar.planning.search import ALGORITHMS, SearchGrid, SearchResult
@@ -13,10 +14,12 @@ __all__ = [
     "GridPlanner",
     "HeuristicConfig",
     "Plan",
+    "Planner",
     "PlannerConfig",
     "SearchGrid",
     "SearchResult",
     "plan",
+    "plan_by",
     "segment_clear",
     "smooth",
     "straighten",

@@ -1,0 +1,73 @@
+"""The mission: its goals in order, and the state machine of what the robot is about."""
+
+import logging
+from collections.abc import Sequence
+
+from dynastar.errors import PlanningError
+from dynastar.geometry import Goal
+from dynastar.navigator.status import State
+
+log = logging.getLogger("dynastar")
+
+OVER = ("idle", "arrived", "blocked")
+
+
+class Mission:
+    """Where to, how it stands and why.
+
+    A mission is under way ("following", "avoiding", "waiting", "turning", "recovering") until it is
+    over ("arrived", "blocked", or "idle" without a goal), and then stays so until the next begins.
+    "sensor_lost" lies on top of either: when data are back, it is what it was before.
+    """
+
+    def __init__(self) -> None:
+        self.goals: list[Goal] = []
+        self.state: State = "idle"
+        self.reason = "no goal"
+        self.error: PlanningError | None = None
+        self.recoveries = 0
+        self._before: tuple[State, str] | None = None  # what it was when data were lost
+
+    @property
+    def under_way(self) -> bool:
+        """Whether there is a goal to drive to."""
+        return self.state not in OVER and bool(self.goals)
+
+    def begin(self, goals: Sequence[Goal], reason: str) -> None:
+        """Sets out for ``goals``; with none it is idle."""
+        self.goals, self.error, self._before = list(goals), None, None
+        self.state, self.reason = ("following" if self.goals else "idle"), reason
+
+    def say(self, state: State, reason: str) -> None:
+        """What the robot does now, while the mission is under way."""
+        if self.state not in OVER:
+            self.state, self.reason = state, reason
+
+    def reach(self) -> None:
+        """The first goal is reached; with the last, the mission is over."""
+        self.goals.pop(0)
+        if not self.goals:
+            self.state, self.reason = "arrived", "the goal is reached"
+
+    def block(self, reason: str, error: PlanningError | None = None) -> None:
+        """The mission is over, short of its goal."""
+        self.state, self.reason, self.error = "blocked", reason, error
+
+    def recover(self, now: float, detail: str) -> None:
+        """Notes a recovery at ``now`` (s)."""
+        log.info("recovery at %.1f s: %s", now, detail)
+        self.recoveries += 1
+        self.say("recovering", detail)
+
+    def lose(self, fault: str) -> None:
+        """Data are missing or wrong: nothing is driven until they are back."""
+        if self._before is None:
+            self._before = self.state, self.reason
+        self.state, self.reason = "sensor_lost", fault
+
+    def regain(self) -> bool:
+        """Data are good: it is what it was before they were lost; whether they had been."""
+        if self._before is None:
+            return False
+        (self.state, self.reason), self._before = self._before, None
+        return True

@@ -1,0 +1,55 @@
+"""Planners from outside: what they have to offer, and what is made of their answers."""
+
+import logging
+import math
+import time
+from typing import Protocol
+
+import numpy as np
+
+from dynastar.errors import NoPath, PlanningError
+from dynastar.grid import OccupancyGrid
+from dynastar.path import Path
+from dynastar.planning.planner import Plan
+
+log = logging.getLogger("dynastar")
+
+Point = tuple[float, float]
+
+AWAY = 2.0  # cells that a path's ends may lie off the start and goal asked for
+
+
+class Planner(Protocol):
+    """Any object that plans, for ``Navigator(..., planner=...)``."""
+
+    def plan(self, grid: OccupancyGrid, start: Point, goal: Point, radius: float) -> Path:
+        """The path of a disc of ``radius`` metres from ``start`` to ``goal``, (x, y) in metres.
+
+        What the map shows and what was seen since is occupied in ``grid``, unknown cells are as the
+        navigator takes them. Raises NoPath, GoalOccupied or StartOccupied where there is none.
+        """
+
+
+def plan_by(
+    planner: Planner, grid: OccupancyGrid, start: Point, goal: Point, radius: float
+) -> Plan:
+    """The plan of a planner from outside; raises PlanningError, whatever the planner raises."""
+    name, began = type(planner).__name__, time.perf_counter()
+    try:
+        path = planner.plan(grid, start, goal, radius)
+        path = path if isinstance(path, Path) else Path(np.asarray(path, dtype=np.float64))
+    except PlanningError:
+        raise
+    except Exception as error:
+        log.exception("the planner %s failed", name)
+        raise NoPath(f"the planner {name} failed: {error!r:.200}") from error
+    for end, wanted, what in ((0, start, "begins"), (-1, goal, "ends")):
+        gap = math.dist(path.points[end], wanted)
+        if gap > AWAY * grid.resolution:
+            raise NoPath(
+                f"the path of the planner {name} {what} {gap:.3g} m from ({wanted[0]:g}, {wanted[1]:g})"
+            )
+    took = 1e3 * (time.perf_counter() - began)
+    cells = np.empty((0, 2), np.int32)
+    length = path.length / grid.resolution
+    return Plan(name, path, path, cells, length, 0, None, took, radius, 0.0)

@@ -1,0 +1,201 @@
+"""Whose path is driven: one that is given, that of another planner, and what counts as a replan."""
+
+import logging
+import math
+import re
+
+import numpy as np
+import pytest
+
+from driving import REST, ROUND, Drive, room
+from dynastar.dwa.scene import AT_REST
+from dynastar.errors import InputError, NoPath
+from dynastar.geometry import Goal, Twist
+from dynastar.grid import OccupancyGrid
+from dynastar.navigator import Navigator
+from dynastar.path import Path
+from dynastar.planning import GridPlanner
+
+SQUARE = np.array([(1.5, 1.5), (6.5, 1.5), (6.5, 4.5), (1.5, 4.5), (1.5, 2.0)])
+
+
+def drive_along(path, pose=(1.5, 1.5, 0.0), true=None, **more):
+    drive = Drive(room(), pose=pose, true=true)
+    drive.navigator.follow(path, **more)
+    places = []
+    while drive.status.state not in ("arrived", "blocked"):
+        drive.tick()
+        places.append(drive.pose[:2])
+        assert drive.now < 120.0
+    return drive, np.array(places)
+
+
+@pytest.mark.parametrize("as_path", [Path, np.ndarray.tolist])
+def test_a_given_path_is_followed_to_its_end(as_path):
+    """Though its end is nearer to the robot than its first corner, and another way is shorter."""
+    drive, places = drive_along(as_path(SQUARE))
+    assert drive.status.state == "arrived"
+    assert math.dist(drive.pose[:2], SQUARE[-1]) <= 0.3
+    dense = Path(SQUARE).resampled(0.0, 1e9, 0.1)
+    for x, y in dense:
+        assert np.hypot(*(places - (x, y)).T).min() < 0.6  # corners are rounded
+    for place in places:
+        assert np.hypot(*(dense - place).T).min() < 0.5
+    assert drive.status.plan is None
+    assert drive.status.replans == 0
+
+
+def test_a_path_that_ends_where_it_begins_is_driven_all_round():
+    drive, places = drive_along(np.vstack([SQUARE, SQUARE[:1]]))
+    assert drive.status.state == "arrived"
+    assert np.hypot(*np.diff(places, axis=0).T).sum() > 12.0
+
+
+def test_a_path_is_joined_where_the_robot_is():
+    drive, places = drive_along(SQUARE, pose=(6.4, 3.0, math.pi / 2))
+    assert drive.status.state == "arrived"
+    assert places[:, 1].min() > 1.9  # it did not go back to the path's beginning
+
+
+def test_at_its_end_a_heading_is_turned_to():
+    drive, _ = drive_along([(1.5, 3.0), (4.0, 3.0)], pose=(1.5, 3.0, 0.0), heading=2.0)
+    assert drive.pose.theta == pytest.approx(2.0, abs=0.15)
+
+
+def test_a_box_on_a_given_path_is_gone_round():
+    drive, places = drive_along(
+        [(1.5, 3.0), (6.5, 3.0)], pose=(1.5, 3.0, 0.0), true=room(8.0, 6.0, (3.5, 2.7, 4.0, 3.3))
+    )
+    assert drive.status.state == "arrived"
+    assert abs(places[:, 1] - 3.0).max() > 0.4
+
+
+@pytest.mark.parametrize(
+    ("path", "words"),
+    [([1.0, 2.0, 3.0], "shape"), (np.zeros((4, 3)), "shape"), (np.zeros((0, 2)), "shape"),
+     ([(0.0, math.nan)], "finite")],
+)  # fmt: skip
+def test_a_path_that_is_none_is_refused(path, words):
+    with pytest.raises(InputError, match=words):
+        Drive(room()).navigator.follow(path)
+
+
+def test_a_mission_is_cancelled_by_a_stop_within_the_limits():
+    drive = Drive(room())
+    drive.navigator.set_goal(Goal(6.5, 3.0))
+    drive.for_seconds(2.0)
+    before = drive.twist.v
+    assert before > 0.5
+    drive.navigator.cancel()
+    assert (drive.status.state, drive.status.reason) == ("idle", "cancelled")
+    limits = drive.robot.limits
+    while drive.twist != REST:
+        command = drive.tick()
+        assert before - limits.v_brake * 0.1 - 1e-9 <= command.v <= before
+        before = command.v
+        assert drive.now < 5.0
+    assert drive.tick() == REST
+
+
+def test_the_first_plan_for_each_goal_is_no_replan():
+    drive = Drive(room())
+    drive.navigator.set_goal([Goal(3.0, 3.0), Goal(4.5, 3.0), Goal(6.0, 3.0)])
+    drive.until("arrived")
+    assert drive.status.plan_id == 3
+    assert drive.status.replans == 0
+
+
+def test_a_new_goal_ends_the_manoeuvre_for_the_last():
+    drive = Drive(room())
+    drive.navigator.set_goal(Goal(6.5, 3.0))
+    drive.for_seconds(1.0)
+    assert drive.navigator._last.v > 0.0
+    drive.navigator.set_goal(Goal(1.5, 1.5))
+    assert drive.navigator._last == AT_REST
+
+
+def test_what_is_blocked_is_still_so_after_data_were_missing():
+    drive = Drive(room())
+    drive.navigator.set_goal(Goal(100.0, 3.0))
+    drive.tick()
+    assert drive.status.state == "blocked"
+    drive.now += 1.0
+    drive.navigator.command(drive.state, [])
+    assert drive.status.state == "sensor_lost"
+    for _ in range(3):
+        assert drive.tick() == REST
+        assert drive.status.state == "blocked"
+
+
+def test_in_the_tick_that_says_blocked_nothing_is_driven():
+    """A pane that the lidar does not see holds the robot: its wheels turn and it does not get on."""
+    drive = Drive(room(), stuck_time=0.5, attempts=1)
+    drive.navigator.set_goal(Goal(6.5, 3.0))
+    command = Twist(1.0, 0.0)
+    while drive.status.state != "blocked":
+        before = command
+        command = drive.navigator.command(drive.state, drive.scan())
+        drive.now += 0.1
+        assert drive.now < 20.0
+    assert 0.0 <= command.v <= before.v
+
+
+class Straight:
+    """Draws a line from start to goal, or fails as it is told."""
+
+    def __init__(self, answer=None):
+        self.answer, self.asked = answer, []
+
+    def plan(self, grid, start, goal, radius):
+        assert isinstance(grid, OccupancyGrid)
+        self.asked.append((start, goal, radius))
+        if isinstance(self.answer, Exception):
+            raise self.answer
+        return [start, goal] if self.answer is None else self.answer
+
+
+def drive_by(planner, **more):
+    drive = Drive(room(), **more)
+    drive.navigator = Navigator(room(), ROUND, planner=planner)
+    drive.navigator.set_goal(Goal(6.5, 3.0))
+    return drive
+
+
+def test_another_planner_plans_in_place_of_ours():
+    planner = Straight()
+    drive = drive_by(planner)
+    drive.until("arrived")
+    assert drive.status.plan.planner == "Straight"
+    assert planner.asked[0][0] == pytest.approx((1.5, 3.0))
+    assert planner.asked[0][1] == (6.5, 3.0)
+    assert planner.asked[0][2] >= 0.25
+
+
+def test_another_planner_gets_to_know_what_was_seen():
+    class Ours:
+        def plan(self, grid, start, goal, radius):
+            return GridPlanner(grid, radius).plan(start, goal).path
+
+    drive = drive_by(Ours(), true=room(8.0, 6.0, (3.5, 1.0, 4.0, 4.4)))
+    drive.until("arrived")
+    assert drive.status.replans > 0
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        (NoPath("there is none"), "there is none"),
+        (RuntimeError("out of order"), "Straight failed.*out of order"),
+        ([(0.5, 0.5), (6.5, 3.0)], "begins 2.69 m from"),
+        ([(1.5, 3.0), (3.0, 3.0)], "ends 3.5 m from"),
+        ([(math.inf, 3.0)], "failed"),
+    ],
+)
+def test_a_planner_that_fails_stops_the_robot_and_raises_nothing(answer, words, caplog):
+    caplog.set_level(logging.CRITICAL)
+    drive = drive_by(Straight(answer))
+    assert drive.tick() == REST
+    assert drive.status.state == "blocked"
+    assert isinstance(drive.status.error, NoPath)
+    assert drive.status.error.args[0]
+    assert re.search(words, str(drive.status.error))
