@@ -1,3 +1,5 @@
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -96,3 +98,29 @@ def test_a_mover_costs_where_and_when_it_is_met():
     alone = predict([], PredictionConfig(), 0.0, 0.1, 40)
     c.add_moving(nobody, FRAME, alone, (0.0, 0.1), (0.05, 2.0), 0.3, 1.0)
     assert (nobody == 1.0).all()
+
+
+@given(st.integers(0, 10**6))
+@settings(max_examples=20, deadline=None)
+def test_every_cell_costs_what_meeting_everybody_there_on_arrival_does(seed):
+    random = np.random.default_rng(seed)
+    movers = [
+        MovingObstacle(*random.uniform(-1.0, 4.0, 2), *random.normal(0.0, 0.8, 2), 0.25)
+        for _ in range(4)
+    ]
+    people = predict(movers, PredictionConfig(), 0.05, 0.1, 30)
+    robot, speed = (1.5, 1.0), 0.9
+    cost = np.ones((20, 30))
+    c.add_moving(cost, FRAME, people, (0.05, 0.1), robot, 0.3, speed)
+    times = 0.05 + 0.1 * np.arange(1, 31)
+    for row, column in np.ndindex(cost.shape):
+        cell = np.array([column + 0.5, row + 0.5]) * A
+        arrives = math.dist(cell, robot) / speed
+        k = int(np.argmin(abs(times - arrives)))
+        expected = 1.0
+        if abs(times[k] - arrives) <= 0.05:
+            gaps = np.hypot(*(people.mean[:, :, k] - cell).T).T - 0.3 - people.now[:, 4:5]
+            sure = 1.0 / (1.0 + np.exp(1.702 * gaps / people.spread[k]))
+            sure[gaps >= 2.0 * people.spread[k]] = 0.0
+            expected += c.MEETING_COST * (sure * people.weights).sum()
+        assert cost[row, column] == pytest.approx(expected)

@@ -48,32 +48,46 @@ def add_moving(cost, frame, people, timing, robot, radius, speed):
     resolution, x0, y0 = frame
     begin, step = timing
     rows, columns = cost.shape
-    for m in range(people.mean.shape[0]):
-        near = radius + people.now[m, 4]
-        for h in range(people.mean.shape[1]):
-            for k in range(people.mean.shape[2]):
-                spread = people.spread[k]
-                reach = near + 2.0 * spread
-                x, y = people.mean[m, h, k, 0], people.mean[m, h, k, 1]
-                t = begin + (k + 1) * step
-                far = math.hypot(x - robot[0], y - robot[1])
-                if abs(far - speed * t) > reach + speed * step:
+    count, hypotheses, steps, _ = people.mean.shape
+    if count == 0:
+        return
+    widest = 2.0 * people.spread[steps - 1]
+    first_row, last_row = np.empty((count, hypotheses)), np.empty((count, hypotheses))
+    first_column, last_column = np.empty((count, hypotheses)), np.empty((count, hypotheses))
+    for m in range(count):
+        reach = radius + people.now[m, 4] + widest
+        for h in range(hypotheses):
+            xs, ys = people.mean[m, h, :, 0], people.mean[m, h, :, 1]
+            first_column[m, h] = (xs.min() - reach - x0) / resolution - 1.0
+            last_column[m, h] = (xs.max() + reach - x0) / resolution
+            first_row[m, h] = (ys.min() - reach - y0) / resolution - 1.0
+            last_row[m, h] = (ys.max() + reach - y0) / resolution
+    when = np.empty(columns, np.int64)  # the step at which the robot gets to each cell of a row
+    for row in range(rows):
+        y = y0 + (row + 0.5) * resolution
+        for column in range(columns):
+            dx, dy = x0 + (column + 0.5) * resolution - robot[0], y - robot[1]
+            arrives = math.sqrt(dx * dx + dy * dy) / speed
+            when[column] = min(int(math.floor((arrives - begin) / step - 0.5)), steps)
+        for m in range(count):
+            near = radius + people.now[m, 4]
+            for h in range(hypotheses):
+                if not first_row[m, h] <= row <= last_row[m, h]:
                     continue
-                first = max(0, int((y - reach - y0) / resolution))
-                last = min(rows - 1, int((y + reach - y0) / resolution))
-                low = max(0, int((x - reach - x0) / resolution))
-                high = min(columns - 1, int((x + reach - x0) / resolution))
-                for row in range(first, last + 1):
-                    cy = y0 + (row + 0.5) * resolution
-                    for column in range(low, high + 1):
-                        cx = x0 + (column + 0.5) * resolution
-                        arrives = math.hypot(cx - robot[0], cy - robot[1]) / speed
-                        if abs(arrives - t) > 0.5 * step:
-                            continue
-                        gap = math.hypot(cx - x, cy - y) - near
-                        if gap < 2.0 * spread:
-                            p = people.weights[h] * contact_probability(gap, spread)
-                            cost[row, column] += MEETING_COST * p
+                low = max(0, int(first_column[m, h]))
+                high = min(columns - 1, int(last_column[m, h]))
+                for column in range(low, high + 1):
+                    k = when[column]
+                    if k < 0 or k >= steps:
+                        continue
+                    spread = people.spread[k]
+                    reach = near + 2.0 * spread
+                    dx = x0 + (column + 0.5) * resolution - people.mean[m, h, k, 0]
+                    dy = y - people.mean[m, h, k, 1]
+                    square = dx * dx + dy * dy
+                    if square < reach * reach:
+                        p = contact_probability(math.sqrt(square) - near, spread)
+                        cost[row, column] += MEETING_COST * people.weights[h] * p
 
 
 @njit(cache=True)
