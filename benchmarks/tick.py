@@ -20,7 +20,7 @@ from dynastar.robot import ROBOTS, Lidar
 from dynastar.simulation import Mover, run
 from dynastar.simulation.warm_up import warm_up
 
-SAMPLES, WALKERS = 100, 5
+SAMPLES, WALKERS = 40, 5
 SQUARE = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
 
 

@@ -40,13 +40,17 @@ class Lead(NamedTuple):
 class Guidance:
     """Keeps the cost-to-go of the present path; its arrays are made once.
 
+    With ``simi`` the distances to the path are those to any path, else only to one that is given.
+
     ``reachable`` tells whether a way leads from the robot to where the path leaves the local map.
     """
 
-    def __init__(self, cells: int, resolution: float, margin: float, comfort: float) -> None:
+    def __init__(
+        self, cells: int, resolution: float, margin: float, comfort: float, simi: bool = False
+    ) -> None:
         n = cells // FACTOR
         self.spacing = resolution * FACTOR
-        self._margin, self._comfort = margin, comfort
+        self._margin, self._comfort, self._simi = margin, comfort, simi
         self._cost, self._filled = np.empty((n, n)), np.empty((n, n))
         self._value, self._slope = np.full((n, n), np.inf), np.empty((n, n, 2))
         self._queue = queue_for(n * n)
@@ -72,7 +76,7 @@ class Guidance:
         people: People,
         meeting: tuple[float, float, float, float],
     ) -> tuple[DistanceField, DistanceField, CostToGo]:
-        """Distances to obstacles and to the path ahead, and the cost-to-go, for a robot at ``here``.
+        """Distances to obstacles, to the path ahead, and the cost-to-go for a robot at ``here``.
 
         ``occupied`` (n, n) are the local map's cells with obstacles. ``meeting`` says when and how
         the robot meets moving obstacles: the predictions' begin and step (s), its speed (m/s), its
@@ -83,8 +87,10 @@ class Guidance:
         resolution = local_map.config.resolution
         obstacles = lower_bounds((~occupied).view(np.uint8), resolution)
         travel_cost(obstacles, FACTOR, self._margin, self._comfort, self._cost)
-        beside = self._distances_to(lead, x0, y0)
-        if lead.ahead < math.inf:
+        field = DistanceField(obstacles, x0, y0, resolution)
+        given = lead.ahead < math.inf
+        beside = self._distances_to(lead, x0, y0) if given or self._simi else field
+        if given:
             self._cost += BESIDE * np.minimum(beside.distance, 1.0)
         begin, step, speed, radius = meeting
         robot = (float(here[0]), float(here[1]))
@@ -101,7 +107,7 @@ class Guidance:
         cost_to_go = CostToGo(self._value, self._filled, self._slope, x0, y0, a)
         self._field = cost_to_go
         self._count = trace(cost_to_go, *robot, self._line)
-        return DistanceField(obstacles, x0, y0, resolution), beside, cost_to_go
+        return field, beside, cost_to_go
 
     def _distances_to(self, lead: Lead, x0: float, y0: float) -> DistanceField:
         """Distances (m) to the part of the path that lies ahead in the local map."""

@@ -66,6 +66,7 @@ class Navigator:
             config.local_map.resolution,
             robot.footprint.inscribed + self.margin,
             config.dwa.comfort,
+            config.dwa.weights.simi > 0.0,
         )
         self.progress = Progress(config.stuck_time)
         self.mission = Mission()

@@ -37,14 +37,13 @@ class LidarSimulator:
         self.lidar = lidar
         self._free = free_cells(grid)
         self._frame = tuple(map(float, grid.frame))
-        edges = [np.hstack([ring, np.roll(ring, -1, axis=0)]) for ring in obstacles]
-        self._edges = np.concatenate([np.empty((0, 4)), *edges])
+        self._edges = np.concatenate([np.empty((0, 4)), *map(edges_of, obstacles)])
         self._range_bound = range_bound
         self._random = random or np.random.default_rng(0)
 
     def add(self, ring: Floats) -> None:
         """Adds the edges of a polygon (k, 2), metres."""
-        self._edges = np.concatenate([self._edges, np.hstack([ring, np.roll(ring, -1, axis=0)])])
+        self._edges = np.concatenate([self._edges, edges_of(ring)])
 
     def scan(self, pose: Pose2D, stamp: float, discs: Floats = NO_DISCS) -> LaserScan:
         """What the lidar of a robot at ``pose`` reads; ``discs`` (m, 3) are x, y, radius in metres.
@@ -79,6 +78,13 @@ class LidarSimulator:
             lidar.range_max,
             lidar.mount,
         )
+
+
+def edges_of(ring: Floats) -> Floats:
+    """The edges (k, 4) of a polygon (k, 2), anticlockwise."""
+    after = np.roll(ring, -1, axis=0)
+    area = ring[:, 0] @ after[:, 1] - ring[:, 1] @ after[:, 0]
+    return np.hstack([ring, after]) if area >= 0.0 else np.hstack([after, ring])
 
 
 def free_cells(grid: OccupancyGrid) -> npt.NDArray[np.int32]:

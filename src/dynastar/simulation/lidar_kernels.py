@@ -86,7 +86,8 @@ def cast(
     """Writes metres to the nearest hit of every beam to ``out`` (n,), inf beyond ``range_max``.
 
     ``free`` as in ``grid_hit``, one cell wider on every side than the grid at ``frame``
-    (resolution, x, y, yaw); ``edges`` (k, 4) and ``discs`` (m, 3) in the map frame, metres.
+    (resolution, x, y, yaw); ``edges`` (k, 4), anticlockwise round their polygons, and ``discs`` (m, 3)
+    in the map frame, metres.
     ``sensor`` is x, y and the direction of beam 0; a sensor off the grid reads 0.
     """
     resolution, yaw = frame[0], frame[3]
@@ -101,6 +102,8 @@ def cast(
     n_edges = 0
     for k in range(len(edges)):
         x0, y0, x1, y1 = edges[k]
+        if (x1 - x0) * (y - y0) > (y1 - y0) * (x - x0):
+            continue  # on the far side of its polygon
         reach = 0.5 * math.sqrt((x1 - x0) ** 2 + (y1 - y0) ** 2) + range_max
         if (0.5 * (x0 + x1) - x) ** 2 + (0.5 * (y0 + y1) - y) ** 2 <= reach * reach:
             near_edges[n_edges] = k

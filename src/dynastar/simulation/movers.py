@@ -43,7 +43,8 @@ class Movers:
     def at(self, time: float) -> Floats:
         """Centres (m, 2) in metres at ``time`` (s); NaN for a mover that is not there."""
         out = np.empty((len(self.radii), 2))
-        kernels.positions(time, self._firsts, self._times, self._points, self._after, out)
+        if len(out):
+            kernels.positions(time, self._firsts, self._times, self._points, self._after, out)
         return out
 
     def gap(self, time: float, pose: Pose2D, footprint: Footprint) -> float:
