@@ -27,9 +27,8 @@ def map_after(
     local_map = LocalMap(config)
     local_map.follow(pose.x, pose.y)
     for s in scans:
-        points, _ = scan_points(
-            s.ranges, s.range_min, s.range_max, s.angle_min, s.angle_increment, *pose
-        )
+        limits, beams = (s.range_min, s.range_max), (s.angle_min, s.angle_increment)
+        points, _ = scan_points(s.ranges, limits, beams, tuple(pose))
         local_map.see(s, pose, points, np.zeros(len(points), bool), error, 0.0)
     local_map.update(scans[-1].stamp if now is None else now)
     return local_map
@@ -166,7 +165,7 @@ def test_what_lies_between_two_beams_is_free_as_far_as_their_gap(
         sensor = (2.525, 2.525, math.pi / 2 * int(rng.integers(4)))
     free_at = np.full((100, 100), NEVER)
     angle_min = -math.radians(fov) / 2
-    mark_free(free_at, 0.0, 0.0, 0.05, gaps, angle_min, increment, full, *sensor, 7.0)
+    mark_free(free_at, (0.05, 0.0, 0.0), gaps, (angle_min, increment), full, sensor, 7.0)
     rows, columns = np.indices(free_at.shape)
     centres = np.column_stack([columns.ravel() * 0.05 + 0.025, rows.ravel() * 0.05 + 0.025])
     free, past, at_end = observed_free(gaps, angle_min, increment, full, sensor, centres)

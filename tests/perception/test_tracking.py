@@ -31,8 +31,8 @@ class Watcher:
         lidar = lidar or self.lidar
         scan = lidar.scan(pose, t, np.array(discs, float).reshape(-1, 3))
         sensor = compose(pose, scan.mount)
-        limits = scan.range_min, scan.range_max, scan.angle_min, scan.angle_increment
-        points, beams = scan_points(scan.ranges, *limits, *sensor)
+        limits, angles = (scan.range_min, scan.range_max), (scan.angle_min, scan.angle_increment)
+        points, beams = scan_points(scan.ranges, limits, angles, tuple(sensor))
         self.local_map.follow(pose.x, pose.y)
         moving = self.tracker.update(scan, sensor, points, beams, self.local_map, self.known)
         self.local_map.see(scan, sensor, points, moving, 0.02, 0.0)

@@ -155,14 +155,8 @@ class Sensing:
         self._beams.setdefault(scan.mount, len(scan.ranges))
         self._seen[scan.mount] = scan.stamp
         sensor = compose(self._pose_at(scan.stamp), scan.mount)
-        points, beams = scan_points(
-            scan.ranges,
-            scan.range_min,
-            scan.range_max,
-            scan.angle_min,
-            scan.angle_increment,
-            *sensor,
-        )
+        limits, angles = (scan.range_min, scan.range_max), (scan.angle_min, scan.angle_increment)
+        points, beams = scan_points(scan.ranges, limits, angles, tuple(sensor))
         moving = self.tracker.update(scan, sensor, points, beams, self.local_map, known)
         self.local_map.see(
             scan, sensor, points, moving, self.config.range_error, self.config.heading_error

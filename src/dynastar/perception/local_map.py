@@ -50,6 +50,11 @@ class LocalMap:
         a = self.config.resolution
         return self.column0 * a, self.row0 * a
 
+    @property
+    def frame(self) -> tuple[float, float, float]:
+        """The side of a cell and the window's low corner, metres."""
+        return (self.config.resolution, *self.origin)
+
     def set_grid(self, grid: OccupancyGrid) -> None:
         """The map, for its keep-out cells; what stands on it has to be seen to count as free."""
         self._grid = grid
@@ -88,7 +93,7 @@ class LocalMap:
         a = self.config.resolution
         x0, y0 = self.origin
         if not fresh:
-            kernels.keep_free(self.free_at, self.hit_at, x0, y0, a, x, y, radius, now)
+            kernels.keep_free(self.free_at, self.hit_at, self.frame, (x, y, radius), now)
             return
         reach = math.ceil(radius / a) + 1
         row, column = math.floor(y / a) - self.row0, math.floor(x / a) - self.column0
@@ -113,40 +118,16 @@ class LocalMap:
         """Takes in one scan from the ``sensor`` pose; ``points`` are its ends, ``moving`` leaves out."""
         increment = scan.angle_increment
         full = abs(increment) * len(scan.ranges) > math.tau - 0.5 * abs(increment)
-        gaps = kernels.free_ranges(
-            scan.ranges,
-            scan.range_min,
-            scan.range_max,
-            increment,
-            full,
-            range_error,
-            heading_error,
-            self.config.narrowest,
-        )
-        x0, y0 = self.origin
-        a = self.config.resolution
-        kernels.mark_free(
-            self.free_at,
-            x0,
-            y0,
-            a,
-            gaps,
-            scan.angle_min,
-            increment,
-            full,
-            sensor.x,
-            sensor.y,
-            sensor.theta,
-            scan.stamp,
-        )
-        kernels.mark_hits(self.hit_at, x0, y0, a, points, moving, scan.stamp)
+        limits, errors = (scan.range_min, scan.range_max), (range_error, heading_error)
+        narrowest = self.config.narrowest
+        gaps = kernels.free_ranges(scan.ranges, limits, increment, full, errors, narrowest)
+        beams = scan.angle_min, increment
+        kernels.mark_free(self.free_at, self.frame, gaps, beams, full, tuple(sensor), scan.stamp)
+        kernels.mark_hits(self.hit_at, self.frame, points, moving, scan.stamp)
 
     def erase(self, x: float, y: float, radius: float) -> None:
         """Forgets the hits in a disc: what was there has turned out to move."""
-        x0, y0 = self.origin
-        kernels.mark_disc(
-            self.hit_at, x0, y0, self.config.resolution, x, y, radius, kernels.NEVER, math.inf
-        )
+        kernels.mark_disc(self.hit_at, self.frame, (x, y, radius), kernels.NEVER, math.inf)
 
     def update(self, now: float) -> None:
         """Brings ``states``, ``open`` and ``field`` (metres between cell centres) up to date."""

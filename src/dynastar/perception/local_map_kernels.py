@@ -18,15 +18,15 @@ ARCTAN_ERROR = 1.5e-8  # rad
 
 
 @njit(cache=True)
-def free_ranges(
-    ranges, range_min, range_max, increment, full_circle, range_error, heading_error, narrowest
-):
+def free_ranges(ranges, limits, increment, full_circle, errors, narrowest):
     """How far space is observed free in the gap between beam i and beam i + 1, metres (n,).
 
     As far as the shorter of the two, less the error of a range and half the gap (a corner may stand
     out that far between two beams), while the gap is narrower than the narrowest obstacle. A
-    heading error takes the minimum over the neighbours that it could swap in.
+    heading error takes the minimum over the neighbours that it could swap in. ``limits`` are range_min
+    and range_max, ``errors`` those of a range (m) and of the heading (rad).
     """
+    (range_min, range_max), (range_error, heading_error) = limits, errors
     n = len(ranges)
     reach = np.empty(n)
     for i in range(n):
@@ -75,12 +75,13 @@ def bearing(dx, dy):
 
 
 @njit(cache=True, fastmath={"nnan", "nsz", "contract"}, error_model="numpy")
-def beams_of(dy, left, resolution, first, per_step, period, last, turns):
-    """The beams, in fractions, that a row of cells lies at: ``dy`` and ``left`` m from the sensor.
+def beams_of(offset, resolution, first, per_step, period, last, turns):
+    """The beams, in fractions, that a row of cells lies at: ``offset`` (dy, left) m from the sensor.
 
     ``first`` is the first beam's angle, ``period`` a whole turn in beams; what is beyond ``last`` is
     that. Without branches, so that several cells go at once; the arctangent is right to ``ARCTAN_ERROR``.
     """
+    dy, left = offset
     per_period = 1.0 / period
     for k in range(turns.size):
         dx = left + np.float64(np.int32(k)) * resolution
@@ -89,14 +90,15 @@ def beams_of(dy, left, resolution, first, per_step, period, last, turns):
 
 
 @njit(cache=True)
-def mark_free(
-    free_at, x0, y0, resolution, gaps, angle_min, increment, full_circle, x, y, theta, now
-):
+def mark_free(free_at, frame, gaps, beams, full_circle, sensor, now):
     """Stamps ``now`` into ``free_at`` for every cell whose centre lies in observed-free space.
 
-    (x0, y0) is the window's low corner, (x, y, theta) the sensor's pose, all in the map frame. A cell
-    that is on the verge of two gaps counts by the smaller.
+    ``frame`` is the window's (resolution, x0, y0), ``beams`` their first angle and increment,
+    ``sensor`` its pose in the map frame. A cell that is on the verge of two gaps counts by the smaller.
     """
+    resolution, x0, y0 = frame
+    angle_min, increment = beams
+    x, y, theta = sensor
     rows, columns = free_at.shape
     n, far = len(gaps), gaps.max()
     if increment == 0.0 or far <= 0.0:
@@ -121,7 +123,8 @@ def mark_free(
             continue
         left = x0 + (low + 0.5) * resolution - x
         here = turns[:count]
-        beams_of(dy, left, resolution, theta + angle_min, 1.0 / increment, period, n + 0.5, here)
+        first, offset = theta + angle_min, (dy, left)
+        beams_of(offset, resolution, first, 1.0 / increment, period, n + 0.5, here)
         cells = free_at[row, low : low + count]
         for k in range(count):
             dx = left + k * resolution
@@ -131,8 +134,9 @@ def mark_free(
 
 
 @njit(cache=True)
-def mark_hits(hit_at, x0, y0, resolution, points, moving, now):
+def mark_hits(hit_at, frame, points, moving, now):
     """Stamps ``now`` into ``hit_at`` where a point that does not move lies."""
+    resolution, x0, y0 = frame
     rows, columns = hit_at.shape
     for i in range(len(points)):
         if moving[i]:
@@ -144,8 +148,9 @@ def mark_hits(hit_at, x0, y0, resolution, points, moving, now):
 
 
 @njit(cache=True)
-def box_of_disc(shape, x0, y0, resolution, x, y, radius):
+def box_of_disc(shape, frame, disc):
     """The first and last row and column of a window of that shape that a disc may reach into."""
+    (resolution, x0, y0), (x, y, radius) = frame, disc
     rows, columns = shape
     first = max(0, int(math.floor((y - radius - y0) / resolution)))
     last = min(rows - 1, int(math.floor((y + radius - y0) / resolution)))
@@ -155,9 +160,10 @@ def box_of_disc(shape, x0, y0, resolution, x, y, radius):
 
 
 @njit(cache=True)
-def mark_disc(stamps, x0, y0, resolution, x, y, radius, value, only_below):
+def mark_disc(stamps, frame, disc, value, only_below):
     """Writes ``value`` into the cells with their centre in a disc where the stamp is below a bound."""
-    first, last, low, high = box_of_disc(stamps.shape, x0, y0, resolution, x, y, radius)
+    (resolution, x0, y0), (x, y, radius) = frame, disc
+    first, last, low, high = box_of_disc(stamps.shape, frame, disc)
     for row in range(first, last + 1):
         dy = y0 + (row + 0.5) * resolution - y
         for column in range(low, high + 1):
@@ -167,9 +173,10 @@ def mark_disc(stamps, x0, y0, resolution, x, y, radius, value, only_below):
 
 
 @njit(cache=True)
-def keep_free(free_at, hit_at, x0, y0, resolution, x, y, radius, now):
+def keep_free(free_at, hit_at, frame, disc, now):
     """Stamps ``now`` into the cells of a disc that were seen free since they were hit."""
-    first, last, low, high = box_of_disc(free_at.shape, x0, y0, resolution, x, y, radius)
+    (resolution, x0, y0), (x, y, radius) = frame, disc
+    first, last, low, high = box_of_disc(free_at.shape, frame, disc)
     for row in range(first, last + 1):
         dy = y0 + (row + 0.5) * resolution - y
         for column in range(low, high + 1):
@@ -214,11 +221,15 @@ def shift(source, target, rows, columns, fill):
 
 
 @njit(cache=True)
-def scan_points(ranges, range_min, range_max, angle_min, increment, x, y, theta):
-    """Where the beams ended: points (k, 2) in the map frame and the beam each came from (k,)."""
+def scan_points(ranges, limits, beams, sensor):
+    """Where the beams ended: points (k, 2) in the map frame and the beam each came from (k,).
+
+    ``limits`` are range_min and range_max, ``beams`` their first angle and increment.
+    """
+    (range_min, range_max), (angle_min, increment), (x, y, theta) = limits, beams, sensor
     n = len(ranges)
     points = np.empty((n, 2))
-    beams = np.empty(n, np.int64)
+    hit_by = np.empty(n, np.int64)
     k = 0
     for i in range(n):
         r = float(ranges[i])
@@ -226,6 +237,6 @@ def scan_points(ranges, range_min, range_max, angle_min, increment, x, y, theta)
             angle = theta + angle_min + increment * i
             points[k, 0] = x + r * math.cos(angle)
             points[k, 1] = y + r * math.sin(angle)
-            beams[k] = i
+            hit_by[k] = i
             k += 1
-    return points[:k], beams[:k]
+    return points[:k], hit_by[:k]
