@@ -61,7 +61,7 @@ class _Announcer(event.Listener):  # type: ignore[misc]
         self._bar: Any = None
 
     def on_start(self, event: Any) -> None:
-        """Before the first, says so; then counts. Kernels of others are not ours to speak of."""
+        """Announces the first compilation and counts all; those of other packages are left out."""
         if not event.data["dispatcher"].py_func.__module__.startswith("dynastar"):
             return
         if self.done == 0:

@@ -74,7 +74,7 @@ class Navigator:
         self._last = AT_REST
         self._choice: Choice | None = None
         self._commands = Commands(robot.limits, config.period, config.latency)
-        self.planning_map = self._taken(grid)
+        self.planning_map = self._planning_map_of(grid)
         self.route = Route(self.planning_map, self.mission, config)
 
     @property
@@ -99,12 +99,12 @@ class Navigator:
 
     def set_map(self, grid: OccupancyGrid) -> None:
         """Another map; what was seen is kept round the robot, the next tick plans anew."""
-        self.planning_map = self._taken(grid)
+        self.planning_map = self._planning_map_of(grid)
         self.route.set_map(self.planning_map)
         if self.mission.state == "blocked":
             self._set_out(self.mission.goals, "a new map")
 
-    def _taken(self, grid: OccupancyGrid) -> PlanningMap:
+    def _planning_map_of(self, grid: OccupancyGrid) -> PlanningMap:
         shape = self.robot.footprint
         radii = shape.circumscribed + self.margin, shape.inscribed + PLAN_MARGIN
         self.sensing.set_grid(grid)

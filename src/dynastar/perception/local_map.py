@@ -127,7 +127,7 @@ class LocalMap:
 
     def erase(self, x: float, y: float, radius: float) -> None:
         """Forgets the hits in a disc: what was there has turned out to move."""
-        kernels.mark_disc(self.hit_at, self.frame, (x, y, radius), kernels.NEVER, math.inf)
+        kernels.mark_disc(self.hit_at, self.frame, (x, y, radius), kernels.NEVER)
 
     def update(self, now: float) -> None:
         """Brings ``states``, ``open`` and ``field`` (metres between cell centres) up to date."""

@@ -160,15 +160,15 @@ def box_of_disc(shape, frame, disc):
 
 
 @njit(cache=True)
-def mark_disc(stamps, frame, disc, value, only_below):
-    """Writes ``value`` into the cells with their centre in a disc where the stamp is below a bound."""
+def mark_disc(stamps, frame, disc, value):
+    """Writes ``value`` into the cells with their centre in a disc."""
     (resolution, x0, y0), (x, y, radius) = frame, disc
     first, last, low, high = box_of_disc(stamps.shape, frame, disc)
     for row in range(first, last + 1):
         dy = y0 + (row + 0.5) * resolution - y
         for column in range(low, high + 1):
             dx = x0 + (column + 0.5) * resolution - x
-            if dx * dx + dy * dy <= radius * radius and stamps[row, column] < only_below:
+            if dx * dx + dy * dy <= radius * radius:
                 stamps[row, column] = value
 
 

@@ -1,7 +1,7 @@
 """Global planning (section III): searches, the improved heuristic, smoothing."""
 
 from dynastar.planning.any_angle import straighten
-from dynastar.planning.foreign import Planner, plan_by
+from dynastar.planning.external import Planner, plan_by
 from dynastar.planning.heuristic import PLANNERS, HeuristicConfig
 from dynastar.planning.planner import GridPlanner, Plan, PlannerConfig, plan, warm_up, warm_up_rest
 from dynastar.planning.search import ALGORITHMS, SearchGrid, SearchResult

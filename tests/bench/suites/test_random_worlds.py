@@ -18,6 +18,7 @@ from dynastar.robot import ROBOTS, Footprint, box
 from dynastar.simulation.contact import Solids
 
 NUMBERS = range(18)
+LEFT_OUT = {1: "no way with room for a careful robot"}  # of seed 0
 
 
 def test_a_seed_and_a_number_give_the_same_world_and_another_seed_another():
@@ -37,11 +38,16 @@ def test_numbers_go_through_all_robots_and_kinds():
     assert [m.number for m in islice(suite.missions(Options()), 3)] == [0, 1, 2]
 
 
-@pytest.mark.parametrize("number", NUMBERS)
+def test_what_nothing_careful_could_drive_is_left_out_and_no_more():
+    reasons = {
+        m.number: suite.leave_out(m, Options()) for m in islice(suite.missions(Options()), 18)
+    }
+    assert {number: reason for number, reason in reasons.items() if reason} == LEFT_OUT
+
+
+@pytest.mark.parametrize("number", sorted(set(NUMBERS) - set(LEFT_OUT)))
 def test_missions_can_be_run(number):
     mission = next(islice(suite.missions(Options()), number, None))
-    if suite.leave_out(mission, Options()):
-        pytest.skip("left out by the rule")
     made = suite.scenario(mission, Options(), 0)
     footprint, solids = made.robot.footprint, Solids(made.grid, made.obstacles)
     assert solids.gap(Pose2D(*made.start), footprint) >= suite.START_ROOM

@@ -1,4 +1,4 @@
-"""Planners from outside: what they have to offer, and what is made of their answers."""
+"""External planners: the protocol they follow, and how their paths become plans."""
 
 import logging
 import math
@@ -33,7 +33,7 @@ class Planner(Protocol):
 def plan_by(
     planner: Planner, grid: OccupancyGrid, start: Point, goal: Point, radius: float
 ) -> Plan:
-    """The plan of a planner from outside; raises PlanningError, whatever the planner raises."""
+    """The plan of an external planner; raises PlanningError, whatever the planner raises."""
     name, began = type(planner).__name__, time.perf_counter()
     try:
         path = planner.plan(grid, start, goal, radius)
