@@ -14,7 +14,7 @@ from dynastar.geometry import Goal, Twist
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import Navigator
 from dynastar.path import Path
-from dynastar.planning import GridPlanner
+from dynastar.planning import GridPlanner, PlannerConfig
 
 SQUARE = np.array([(1.5, 1.5), (6.5, 1.5), (6.5, 4.5), (1.5, 4.5), (1.5, 2.0)])
 
@@ -102,6 +102,24 @@ def test_the_first_plan_for_each_goal_is_no_replan():
     drive.navigator.set_goal([Goal(3.0, 3.0), Goal(4.5, 3.0), Goal(6.0, 3.0)])
     drive.until("arrived")
     assert drive.status.plan_id == 3
+    assert drive.status.replans == 0
+
+
+def test_a_path_by_eq_2_gives_way_to_one_that_is_clearly_shorter():
+    """Eq. 2 goes round the nearer end of the first wall; past the second, the other is nearer."""
+    known = room(12.0, 8.0, (3.5, 2.0, 3.8, 5.5), (7.0, 2.0, 7.3, 7.9))
+    drive = Drive(known, pose=(1.5, 4.0, 0.0), planner=PlannerConfig(exact=True))
+    drive.navigator.set_goal(Goal(10.0, 4.0))
+    drive.tick()
+    first = drive.status.plan
+    assert first is not None
+    assert first.planner == "improved"
+    drive.tick()
+    second = drive.status.plan
+    assert second is not None
+    assert (second.planner, drive.status.plan_id) == ("auto", 2)
+    assert drive.status.plan_reason == "an exact search found a shorter path"
+    assert second.path.length < 0.99 * first.path.length
     assert drive.status.replans == 0
 
 

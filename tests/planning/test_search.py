@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from dynastar.errors import ConfigError, GoalOccupied, MapError, NoPath, OutOfMap, StartOccupied
 from dynastar.planning import PLANNERS, HeuristicConfig, SearchGrid
+from dynastar.planning.heuristic import kernel_terms
 from dynastar.planning.labels import MAX_STAMP
 from naive import improved, shortest
 
@@ -132,6 +133,48 @@ def test_every_reading_of_eqs_2_and_3_is_what_it_says(algorithm, config):
         assert found.expanded == len(closed)
         assert {tuple(cell) for cell in found.explored} == closed
         assert_legal(occupied, found.cells, start, goal)
+
+
+@pytest.mark.parametrize("config", CONFIGS)
+@pytest.mark.parametrize("fine", [2, 3])
+def test_eq_2_counts_cells_of_the_map_however_it_is_refined_and_inflated(config, fine):
+    """P, Q and k are what they were on the map itself, in its cells."""
+    for seed in range(10):
+        occupied, start, goal = random_world(seed, size=18)
+        refined = np.kron(occupied, np.ones((fine, fine), np.uint8))
+        grid = SearchGrid(refined, refined, fine)
+        a, b = ((fine * row, fine * column) for row, column in (start, goal))
+        coarse = kernel_terms(config, start, goal, int(occupied.sum()))
+        found = kernel_terms(config, a, b, int(grid.sums[-1, -1]), fine)
+        assert found.k == fine * coarse.k  # in steps of the finer grid, as h(n) is
+        counts = int(grid.sums[-1, -1]) / found.q, occupied.sum() / coarse.q
+        corner = ((abs(a[0] - b[0]) + 1) * (abs(a[1] - b[1]) + 1)) / (
+            fine**2 * (abs(start[0] - goal[0]) + 1) * (abs(start[1] - goal[1]) + 1)
+        )
+        line = (max(abs(a[0] - b[0]), abs(a[1] - b[1])) + 1) / (
+            fine * (max(abs(start[0] - goal[0]), abs(start[1] - goal[1])) + 1)
+        )
+        share = {"rectangle": corner, "line": line, "ratio": 1.0}[config.q]
+        assert counts[0] * share == pytest.approx(counts[1])
+
+
+@given(st.integers(0, 10**9))
+@settings(max_examples=50, deadline=None)
+def test_what_eq_2_counts_may_be_another_mask_than_what_is_searched(seed):
+    occupied, _, _ = random_world(seed, size=30, density=0.25)
+    inside = np.zeros_like(occupied)
+    inside[::2] = occupied[::2]  # any other mask
+    mask = inside.view(np.uint8).copy()
+    grid = SearchGrid(occupied, mask)
+    assert (grid.sums[1:, 1:] == inside.cumsum(0).cumsum(1)).all()
+    rng = np.random.default_rng(seed)
+    row, column = (int(rng.integers(0, n)) for n in occupied.shape)
+    patch = rng.random(mask[row : row + 5, column : column + 7].shape) < 0.5
+    grid.count(row, column, patch.astype(np.int32) - mask[row : row + 5, column : column + 7])
+    mask[row : row + 5, column : column + 7] = patch
+    assert (grid.sums[1:, 1:] == mask.astype(int).cumsum(0).cumsum(1)).all()
+    grid.update(row, column, ~occupied[row : row + 3, column : column + 3])
+    assert (grid.sums[1:, 1:] == mask.astype(int).cumsum(0).cumsum(1)).all()
 
 
 def test_a_grid_is_searched_again_and_again():

@@ -1,6 +1,7 @@
 """The dynamic window's settings: the weights of Eq. 9, what is sampled, and how it is scored."""
 
-from typing import Annotated, NamedTuple
+import math
+from typing import Annotated, Literal, NamedTuple
 
 from dynastar.config import Field
 
@@ -15,10 +16,41 @@ class Weights(NamedTuple):
     risk: Annotated[float, Field("rho: keeps away from moving obstacles", "", 0.0, 100.0)] = 20.0
 
 
+class ArcsConfig(NamedTuple):
+    """The classic window, whose samples are held on constant arcs (``dwa.search = "arcs"``)."""
+
+    time: Annotated[float, Field("forward simulation time", "s", 0.1, 10.0)] = 3.0
+    motion: Annotated[
+        Literal["exact", "printed"], Field("Eq. 4 along the arc, or by straight steps as in print")
+    ] = "exact"
+    stop: Annotated[
+        Literal["certified", "printed"], Field("admissible by the certified stop, or by Eq. 7")
+    ] = "certified"
+    dist: Annotated[
+        Literal["least", "end"], Field("clearance of Eq. 8: the arc's least, or its end point's")
+    ] = "least"
+    normalise: Annotated[
+        Literal["ranges", "sums"],
+        Field("terms over fixed ranges, or over their sums over the admissible samples"),
+    ] = "ranges"
+    v_step: Annotated[float, Field("resolution of the speed", "m/s", 0.001, 1.0)] = 0.01
+    omega_step: Annotated[float, Field("resolution of the turning rate", "rad/s", 0.001, 1.0)] = (
+        math.radians(1.0)
+    )
+
+
 class DwaConfig(NamedTuple):
     """Settings of one dynamic window."""
 
     weights: Weights = Weights()
+    search: Annotated[
+        Literal["manoeuvres", "arcs"],
+        Field("samples are held for a while and then follow, stop or back off; or constant arcs"),
+    ] = "manoeuvres"
+    progress: Annotated[
+        Literal["cost-to-go", "bearing"],
+        Field("heading of Eq. 8: decrease of the cost-to-go, or the bearing of a target"),
+    ] = "cost-to-go"
     arc_time: Annotated[float, Field("shortest time a sample is held", "s", 0.1, 10.0)] = 0.5
     horizon: Annotated[float, Field("how far ahead risk is looked for", "s", 0.2, 30.0)] = 4.0
     step: Annotated[float, Field("time between the points of a roll-out", "s", 0.01, 1.0)] = 0.1
@@ -31,3 +63,4 @@ class DwaConfig(NamedTuple):
     hysteresis: Annotated[float, Field("what a change of mind has to be worth", "", 0.0, 10.0)] = (
         0.02
     )
+    arcs: ArcsConfig = ArcsConfig()

@@ -51,7 +51,8 @@ class Scene(NamedTuple):
     ``margin`` (m) is kept from both, ``kept`` from the former where the robot stands nearer than
     that. ``ahead`` (s) is when a command given now acts, ``last`` what is left of the manoeuvre that
     was chosen last, ``v_cap`` (m/s) the speed limit. ``path`` are distances to the path ahead, and
-    ``sigma`` the least weight of keeping to it.
+    ``sigma`` the least weight of keeping to it; ``target`` (x, y) is the intermediate target (V, step
+    2), which only ``dwa.progress = "bearing"`` looks at.
     """
 
     closed: DistanceField
@@ -66,3 +67,4 @@ class Scene(NamedTuple):
     v_cap: float
     path: DistanceField
     sigma: float
+    target: tuple[float, float]

@@ -1,5 +1,7 @@
 """The dynamic window: which speeds can be reached (Eqs. 5 and 6), and its samples."""
 
+import math
+
 from dynastar.compiled import njit
 from dynastar.dwa.motion import slew
 
@@ -42,13 +44,42 @@ def spaced(low, high, count, values):
 
 
 @njit(cache=True)
-def sample_window(window, speeds, rates, n_v, n_omega, samples):
-    """Writes the window's samples (v, omega) to ``samples`` (n, 2) and returns how many there are."""
-    count_v = spaced(window[0], window[1], n_v, speeds)
-    count_w = spaced(window[2], window[3], n_omega, rates)
+def multiples(low, high, step, most, values):
+    """Writes the multiples of ``step`` from low to high, and how many; every second, third... of them
+    where there are more than ``most``. Between two of them it is the nearer end to 0."""
+    width = int(math.floor((high - low) / step)) + 1
+    step *= max(1, -(-width // most))
+    first, last = int(math.ceil(low / step - 1e-9)), int(math.floor(high / step + 1e-9))
+    if last < first:
+        values[0] = low if abs(low) < abs(high) else high
+        return 1
+    for k in range(first, last + 1):
+        values[k - first] = k * step
+    return last - first + 1
+
+
+@njit(cache=True)
+def sample_multiples(window, speeds, rates, steps, most, samples):
+    """Writes the samples (v, omega) at multiples of ``steps`` (m/s, rad/s), and returns how many."""
+    count_v = multiples(window[0], window[1], steps[0], most[0], speeds)
+    count_w = multiples(window[2], window[3], steps[1], most[1], rates)
+    return cross(count_v, count_w, speeds, rates, samples)
+
+
+@njit(cache=True)
+def cross(count_v, count_w, speeds, rates, samples):
+    """Writes each of the speeds with each of the turning rates to ``samples``; returns how many."""
     k = 0
     for i in range(count_v):
         for j in range(count_w):
             samples[k, 0], samples[k, 1] = speeds[i], rates[j]
             k += 1
     return k
+
+
+@njit(cache=True)
+def sample_window(window, speeds, rates, n_v, n_omega, samples):
+    """Writes the window's samples (v, omega) to ``samples`` (n, 2) and returns how many there are."""
+    count_v = spaced(window[0], window[1], n_v, speeds)
+    count_w = spaced(window[2], window[3], n_omega, rates)
+    return cross(count_v, count_w, speeds, rates, samples)

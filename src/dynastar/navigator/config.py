@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from typing import Annotated, Any, Literal, NamedTuple
 
 from dynastar.config import Field, checked, choose
-from dynastar.dwa.config import DwaConfig, Weights
+from dynastar.dwa.config import ArcsConfig, DwaConfig, Weights
 from dynastar.perception import LocalMapConfig, PredictionConfig, TrackerConfig
-from dynastar.planning import HeuristicConfig, PlannerConfig
+from dynastar.planning import PlannerConfig
 
 CELLS = 4  # of the maps, at least, to a robot's inscribed radius
 
@@ -28,13 +28,18 @@ class NavigatorConfig(NamedTuple):
     goal_tolerance: Annotated[float, Field("so near is there", "m", 0.01, 5.0)] = 0.25
     heading_tolerance: Annotated[float, Field("so well aligned is aligned", "rad", 0.01, 3.2)] = 0.1
     global_path: Annotated[
-        Literal["replanned", "once"], Field("planned whenever need be, or for each goal once")
+        Literal["replanned", "strayed", "once"],
+        Field("planned whenever need be, or where the robot left it (V, step 4), or once"),
     ] = "replanned"
+    stray: Annotated[
+        float, Field("further from its path a robot has left it (V, step 4)", "m", 0.01, 100.0)
+    ] = 1.0
     planning_resolution: Annotated[float, Field("plan on cells no larger", "m", 0.001, 10.0)] = 0.05
     comfort: Annotated[float, Field("clearance a plan has to spare if it can", "m", 0.0, 5.0)] = 0.1
     stuck_time: Annotated[float, Field("no progress for so long is stuck", "s", 0.5, 120.0)] = 6.0
-    attempts: Annotated[int, Field("rounds of recovery before giving up", "", 1, 100)] = 4
-    planner: PlannerConfig = PlannerConfig(heuristic=HeuristicConfig(parent=False, q="ratio"))
+    attempts: Annotated[int, Field("rounds of recovery before giving up", "", 0, 100)] = 4
+    track: Annotated[bool, Field("tell moving obstacles from what stands")] = True
+    planner: PlannerConfig = PlannerConfig(exact=True)
     dwa: DwaConfig = DwaConfig()
     local_map: LocalMapConfig = LocalMapConfig()
     tracker: TrackerConfig = TrackerConfig()
@@ -47,6 +52,27 @@ PRESETS: dict[str, NavigatorConfig] = {
         reverse=False,
         planner=PlannerConfig(),
         dwa=DwaConfig(weights=Weights(0.5, 0.2, 0.2, 0.1)),
+    ),
+    "printed": NavigatorConfig(
+        reverse=False,
+        hidden_speed=0.0,
+        track=False,
+        comfort=0.0,
+        global_path="strayed",
+        stuck_time=120.0,
+        attempts=0,
+        planner=PlannerConfig(),
+        dwa=DwaConfig(
+            weights=Weights(0.5, 0.2, 0.2, 0.1, risk=0.0),
+            search="arcs",
+            progress="bearing",
+            reach=0.0,
+            v_samples=21,
+            omega_samples=41,
+            comfort=10.0,
+            hysteresis=0.0,
+            arcs=ArcsConfig(motion="printed", stop="printed", dist="end", normalise="sums"),
+        ),
     ),
 }
 

@@ -238,6 +238,7 @@ class Navigator:
             self._speed_cap(pose),
             beside,
             KEPT if lead.ahead < math.inf else 0.0,
+            self.route.target(pose, limits.v_max * config.dwa.arcs.time),
         )
 
     def _speed_cap(self, pose: Pose2D) -> float:

@@ -45,8 +45,12 @@ class PlanningMap:
             self._unknown = self._unknown & ~self.grid.keepout
         roomy, tight = radii
         widths = sorted({roomy + config.comfort, roomy, tight}, reverse=True)
-        self.planners = [GridPlanner(self.grid, r, config.unknown, config.planner) for r in widths]
+        self.planners = [
+            GridPlanner(self.grid, r, config.unknown, config.planner, factor) for r in widths
+        ]
         self._planner = planner
+        # The search that finds the shortest path, where one is wanted.
+        self.exact = "auto" if config.planner.exact and planner is None else ""
         self.seen = np.zeros(self.prior.shape, np.bool_)
         self.cleared = np.zeros(self.prior.shape, np.bool_)
         self._marks = np.zeros(self.prior.shape, np.uint8)
@@ -92,16 +96,16 @@ class PlanningMap:
         if len(rows):
             self._mark(rows.min(), rows.max() + 1, columns.min(), columns.max() + 1)
 
-    def plan(self, start: Point, goal: Point, explored: bool) -> Plan:
+    def plan(self, start: Point, goal: Point, explored: bool, planner: str = "") -> Plan:
         """The roomiest plan that is as short as any; raises what the tightest planner raises.
 
-        A start too close to something for a roomy planner has to be led out of that by a way that
-        the tightest can follow.
+        ``planner`` names another search than the configured one. A start too close to something
+        for a roomy planner has to be led out of that by a way that the tightest can follow.
         """
-        tight = self._ask(self.planners[-1], start, goal, explored)
-        for planner in self.planners[:-1]:
+        tight = self._ask(self.planners[-1], start, goal, explored, planner)
+        for width in self.planners[:-1]:
             try:
-                plan = self._ask(planner, start, goal, explored)
+                plan = self._ask(width, start, goal, explored, planner)
             except (NoPath, GoalOccupied, StartOccupied):
                 continue
             if plan.path.length > LONGER * tight.path.length:
@@ -111,12 +115,14 @@ class PlanningMap:
                 return plan
         return tight
 
-    def _ask(self, planner: GridPlanner, start: Point, goal: Point, explored: bool) -> Plan:
+    def _ask(
+        self, width: GridPlanner, start: Point, goal: Point, explored: bool, planner: str
+    ) -> Plan:
         """A plan of a planner's width, by that planner or by the one that stands in for all."""
         if self._planner is None:
-            return planner.plan(start, goal, explored=explored)
+            return width.plan(start, goal, explored, planner)
         grid = OccupancyGrid(self.blocked.astype(np.int8) * 100, self.frame)
-        return plan_by(self._planner, grid, start, goal, planner.radius)
+        return plan_by(self._planner, grid, start, goal, width.radius)
 
     def blocked_at(self, points: npt.NDArray[np.float64]) -> float | None:
         """Metres along a polyline (n, 2) to where even the tightest planner could not go."""

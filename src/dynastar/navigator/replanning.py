@@ -18,6 +18,7 @@ REPLAN_PERIOD = 1.0  # s between two plans at the least
 REVIEW_PERIOD = 5.0  # s after which a better plan is looked for
 SPACING = 0.1  # m between the points of a given path that are looked at
 BETTER = 0.9  # of what is left of a path, up to which a new one replaces it
+CLEARLY = 0.99  # of the length of a path by Eq. 2, up to which an exact one replaces it
 
 
 class Route:
@@ -34,6 +35,7 @@ class Route:
         self.plan_id, self.reason, self.replans = 0, "", 0
         self._given: Path | None = None
         self._planned = False  # for this goal
+        self._unsure = False  # whether an exact search may find a shorter path
         self._planned_at = -math.inf
         self._no_path_since: float | None = None
         self._forgotten = 0
@@ -46,7 +48,8 @@ class Route:
     def start_over(self, given: Path | None = None) -> None:
         """Another goal, or a path that is ``given`` and only followed."""
         self.path, self.s, self._given = None, 0.0, given
-        self._planned, self._no_path_since, self._forgotten = False, None, 0
+        self._planned = self._unsure = False
+        self._no_path_since, self._forgotten = None, 0
 
     def ends_within(self, distance: float) -> bool:
         """Whether a given path has been followed but for ``distance`` (m); of a planned one always."""
@@ -59,6 +62,14 @@ class Route:
         if self.path is None:
             return Lead(self._stand, 0.0, math.inf)
         return Lead(self.path, self.s, math.inf if self._given is None else ahead)
+
+    def target(self, here: Pose2D, radius: float) -> tuple[float, float]:
+        """Where the path leaves a circle of ``radius`` (m) round the robot (V, step 2), or its end."""
+        path = self._stand if self.path is None else self.path
+        points = path.resampled(self.s, self.s + 3.0 * radius, SPACING)
+        outside = np.hypot(points[:, 0] - here.x, points[:, 1] - here.y) > radius
+        x, y = points[int(np.argmax(outside)) if outside.any() else -1].tolist()
+        return x, y
 
     def keep(self, state: RobotState, changed: bool, reachable: bool) -> bool:
         """Keeps a path that leads to the goal; whether it is a new one.
@@ -75,9 +86,14 @@ class Route:
             return not waits and self._replan(state, "a plan is needed")
         here = (state.pose.x, state.pose.y)
         self.s = self.path.project(*here, low=self.s - 0.5, high=self.s + 2.0)
-        fixed = self._given is not None or self.config.global_path == "once"
-        if since < REPLAN_PERIOD or fixed:
+        if self._unsure:
+            return self._improve(state)
+        rule = self.config.global_path
+        if since < REPLAN_PERIOD or rule == "once" or self._given is not None:
             return False
+        if rule == "strayed":
+            astray = math.dist(here, self.path.at(self.s)) > self.config.stray
+            return astray and self._replan(state, "the robot has left the path")
         if not reachable:
             return self._replan(state, "the path is blocked nearby")
         if changed:
@@ -85,7 +101,7 @@ class Route:
             ahead = np.vstack([self.path.at(self.s), rest])
             if len(rest) and self.planning_map.blocked_at(ahead) is not None:
                 return self._replan(state, "an obstacle blocks the path")
-        return since > REVIEW_PERIOD and self._replan(state, "a shorter path", below=BETTER)
+        return since > REVIEW_PERIOD and self._replan(state, "a shorter path", BETTER)
 
     def _join(self, path: Path, pose: Pose2D) -> None:
         """Follows a given path from where the robot is nearest, the first such place along it."""
@@ -103,12 +119,9 @@ class Route:
 
     def _replan(self, state: RobotState, reason: str, below: float = math.inf) -> bool:
         """A new plan, taken if it is shorter than ``below`` times what is left of the present one."""
-        goal: Goal = self._mission.goals[0]
         self._planned_at = state.stamp
         try:
-            plan = self.planning_map.plan(
-                (state.pose.x, state.pose.y), (goal.x, goal.y), explored=True
-            )
+            plan = self._plan(state, self.planning_map.exact if below < math.inf else "")
         except PlanningError as error:
             if self.path is None or below == math.inf:
                 self._without_path(state, error)
@@ -116,12 +129,33 @@ class Route:
         self._no_path_since = None
         if self.path is not None and plan.path.length > below * (self.path.length - self.s):
             return False
-        self.path, self.s = plan.path, 0.0
         self.replans += self._planned
-        self._planned = True
-        self.plan, self.plan_id, self.reason = plan, self.plan_id + 1, reason
+        self._planned, self._unsure = True, below == math.inf and self.planning_map.exact != ""
+        self._take(plan, reason)
         self._mission.error = None
         return True
+
+    def _improve(self, state: RobotState) -> bool:
+        """The shortest path in place of one by Eq. 2, if it is clearly shorter; whether it is."""
+        self._unsure = False
+        assert self.path is not None
+        try:
+            plan = self._plan(state, self.planning_map.exact)
+        except PlanningError:
+            return False
+        if plan.path.length > CLEARLY * (self.path.length - self.s):
+            return False
+        self._take(plan, "an exact search found a shorter path")
+        return True
+
+    def _plan(self, state: RobotState, planner: str) -> Plan:
+        goal: Goal = self._mission.goals[0]
+        here = (state.pose.x, state.pose.y)
+        return self.planning_map.plan(here, (goal.x, goal.y), True, planner)
+
+    def _take(self, plan: Plan, reason: str) -> None:
+        self.path, self.s = plan.path, 0.0
+        self.plan, self.plan_id, self.reason = plan, self.plan_id + 1, reason
 
     def _without_path(self, state: RobotState, error: PlanningError) -> None:
         """No path on the planning map: what was sensed may be gone, so forget it and look again."""

@@ -58,14 +58,14 @@ def estimate(rows: int, columns: int, euclidean: bool) -> int:
 
 
 @njit(cache=True)
-def sum_up(near: Bytes, sums: npt.NDArray[np.int32]) -> None:
-    """Fills the summed-area table [rows + 1, columns + 1] of the blocked cells of a padded grid."""
+def sum_up(occupied: Bytes, sums: npt.NDArray[np.int32]) -> None:
+    """Fills the summed-area table [rows + 1, columns + 1] of a mask [rows, columns], 0 or 1."""
     sums[0] = 0
     for y in range(1, sums.shape[0]):
         along = 0
         sums[y, 0] = 0
         for x in range(1, sums.shape[1]):
-            along += near[y, x] == 0
+            along += occupied[y - 1, x - 1]
             sums[y, x] = sums[y - 1, x] + along
 
 

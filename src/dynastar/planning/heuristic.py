@@ -48,19 +48,27 @@ PLANNERS: dict[str, Callable[[HeuristicConfig], HeuristicConfig]] = {
 
 
 def kernel_terms(
-    config: HeuristicConfig, start: tuple[int, int], goal: tuple[int, int], occupied: int
+    config: HeuristicConfig,
+    start: tuple[int, int],
+    goal: tuple[int, int],
+    occupied: int,
+    cell: int = 1,
 ) -> Terms:
-    """The numbers that the search kernel wants; ``occupied`` is how many cells of the map are."""
+    """The numbers that the search kernel wants; ``occupied`` is how many cells of the map are.
+
+    Cells are those of the grid that is searched, a cell of the map is ``cell`` of them wide.
+    """
     rows, columns = abs(start[0] - goal[0]) + 1, abs(start[1] - goal[1]) + 1
-    q = {"rectangle": rows * columns, "line": max(rows, columns), "ratio": max(occupied, 1)}
+    line = cell * max(rows, columns)
+    q = {"rectangle": rows * columns, "line": line, "ratio": max(occupied, 1)}
     return Terms(
         weight=float(config.weight),
         euclidean=config.estimate == "euclidean",
         adaptive=config.exponential or config.parent or config.k > 0.0,
         exponential=config.exponential,
         q=float(q[config.q]),
-        around=int(config.around) if config.q == "ratio" else 0,
+        around=cell * int(config.around) + cell // 2 if config.q == "ratio" else 0,
         parent=config.parent,
         # The angle at n is pi less the angle of progress, so its cosine has the other sign.
-        k=math.copysign(config.k * STRAIGHT, 1.0 if config.beta == "progress" else -1.0),
+        k=math.copysign(config.k * cell * STRAIGHT, 1.0 if config.beta == "progress" else -1.0),
     )

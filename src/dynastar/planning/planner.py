@@ -41,6 +41,9 @@ class PlannerConfig(NamedTuple):
         Literal["taut", "any-angle", "none"],
         Field("the path is pulled taut, or also the shortest near it at any angle; or stays"),
     ] = "taut"
+    exact: Annotated[
+        bool, Field("a navigator searches exactly, too, and takes what is clearly shorter")
+    ] = False
     rounding: Annotated[float, Field("where a corner's rounding may begin", "m", 0.0, 10.0)] = 0.5
 
 
@@ -71,8 +74,9 @@ class GridPlanner:
     """A map prepared once for planning a disc's way over it, again and again.
 
     ``radius`` is the disc's in metres; ``unknown`` says whether unknown cells are "free" or
-    "blocked" to it. Blocked is also what lies outside the map. Raises ConfigError for a radius
-    below 0 or a planner that does not exist.
+    "blocked" to it. Blocked is also what lies outside the map. Where ``grid`` is the map refined, a
+    cell of the map is ``cell`` of its cells wide, and Eq. 2 counts in those. Raises ConfigError for a
+    radius below 0 or a planner that does not exist.
     """
 
     def __init__(
@@ -81,6 +85,7 @@ class GridPlanner:
         radius: float,
         unknown: Unknown = "blocked",
         config: PlannerConfig = PlannerConfig(),
+        cell: int = 1,
     ) -> None:
         if not (math.isfinite(radius) and radius >= 0.0):
             raise ConfigError(f"a planning radius is {radius}: expected 0 m or more")
@@ -90,7 +95,7 @@ class GridPlanner:
         self.config = config
         self._radius_cells = self.radius / grid.resolution
         self._blocked = mask_bytes(grid.blocked(unknown))
-        self._search = SearchGrid(inflate(self._blocked, self._radius_cells))
+        self._search = SearchGrid(inflate(self._blocked, self._radius_cells), self._blocked, cell)
         self._stale: tuple[int, int, int, int] | None = (
             None  # marked since: top, left, bottom, right
         )
@@ -118,7 +123,9 @@ class GridPlanner:
         patch = np.asarray(patch_blocked, dtype=bool)
         check_window(row0, col0, patch.shape, (self.grid.rows, self.grid.columns))
         bottom, right = row0 + patch.shape[0], col0 + patch.shape[1]
-        self._blocked[row0:bottom, col0:right] = patch
+        window = self._blocked[row0:bottom, col0:right]
+        self._search.count(row0, col0, patch.astype(np.int32) - window)
+        window[:] = patch
         if self._stale is not None:
             top, left, low, side = self._stale
             row0, col0 = min(row0, top), min(col0, left)
@@ -144,12 +151,15 @@ class GridPlanner:
             seen[top - seen_top : bottom - seen_top, left - seen_left : right - seen_left],
         )
 
-    def plan(self, start_xy: Point, goal_xy: Point, explored: bool = False) -> Plan:
-        """The path from start to goal, both (x, y) in metres.
+    def plan(
+        self, start_xy: Point, goal_xy: Point, explored: bool = False, planner: str = ""
+    ) -> Plan:
+        """The path from start to goal, both (x, y) in metres, by the configured planner or another.
 
         A start that is too close to something is led out the shortest way first. Raises OutOfMap,
         StartOccupied, GoalOccupied or NoPath.
         """
+        planner = planner or self.config.planner
         began = time.perf_counter()
         self._inflate_stale()
         start, goal = self._point(start_xy, "start"), self._point(goal_xy, "goal")
@@ -159,9 +169,9 @@ class GridPlanner:
         start_cell = self._fitting_cell(start)
         if start_cell is not None:
             way_out = np.array([start_cell], np.int32)
-            found = self._find(start_cell, goal_cell, explored)
+            found = self._find(start_cell, goal_cell, explored, planner)
         else:
-            way_out, found = self._find_from_inside(start, goal_cell, explored)
+            way_out, found = self._find_from_inside(start, goal_cell, explored, planner)
         lead = _without_repeats(np.vstack([[start], way_out + 0.5]))
         if start_cell is not None:
             lead = lead[:1]
@@ -182,7 +192,7 @@ class GridPlanner:
         time_ms = 1e3 * (time.perf_counter() - began)
         lead_steps = np.diff(lead, axis=0)
         return Plan(
-            planner=self.config.planner,
+            planner=planner,
             path=self._path(line, start_xy, goal_xy),
             grid_path=self._path(grid_line, start_xy, goal_xy),
             cells=np.vstack([way_out[:-1], found.cells]),
@@ -206,12 +216,11 @@ class GridPlanner:
         at = first_contact(self._blocked, cells, float(radius_cells))
         return None if at < 0.0 else at * self.grid.resolution
 
-    def _find(self, start: Cell, goal: Cell, explored: bool) -> SearchResult:
-        config = self.config
-        return self._search.search(start, goal, config.planner, config.heuristic, explored)
+    def _find(self, start: Cell, goal: Cell, explored: bool, planner: str) -> SearchResult:
+        return self._search.search(start, goal, planner, self.config.heuristic, explored)
 
     def _find_from_inside(
-        self, start: Point, goal: Cell, explored: bool
+        self, start: Point, goal: Cell, explored: bool, planner: str
     ) -> tuple[Cells, SearchResult]:
         """The shortest way out of the inflation that leads on to the goal, and the rest."""
         cell = (int(start[0]), int(start[1]))
@@ -221,7 +230,7 @@ class GridPlanner:
             if no_path is not None and self._search.reached(exit_cell):
                 continue
             try:
-                return way, self._find(exit_cell, goal, explored)
+                return way, self._find(exit_cell, goal, explored, planner)
             except NoPath as error:
                 no_path = error
         if no_path is not None:

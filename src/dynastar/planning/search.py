@@ -36,15 +36,24 @@ class SearchGrid:
     """A grid prepared once and searched many times; nothing is cleared between searches.
 
     ``occupied`` is [rows, columns], true where nothing can be. A diagonal step needs both cells
-    beside it free. Raises MapError for an array that is not two-dimensional, empty or too large.
+    beside it free. P of Eq. 2 counts the cells of ``counted`` (uint8, 1 where something is; looked at
+    when it is first wanted, then see ``count``), else those of ``occupied``. A cell of the map, in
+    which k and "around n" are measured, is ``cell`` cells of the grid wide. Raises MapError for an
+    array that is not two-dimensional, empty or too large.
     """
 
-    def __init__(self, occupied: npt.ArrayLike) -> None:
+    def __init__(
+        self,
+        occupied: npt.ArrayLike,
+        counted: npt.NDArray[np.uint8] | None = None,
+        cell: int = 1,
+    ) -> None:
         mask = np.asarray(occupied, dtype=bool)
         if mask.ndim != 2 or 0 in mask.shape:
             raise MapError(f"a search grid has shape {mask.shape}: expected (rows, columns) > 0")
         self.rows, self.columns = mask.shape
         self._width = self.columns + 2
+        self._counted, self._cell = counted, cell
         if (self.rows + 2) * self._width > labels.MAX_NODES:
             raise MapError(
                 f"a search grid has {self.rows} x {self.columns} cells: "
@@ -78,12 +87,25 @@ class SearchGrid:
 
     @property
     def sums(self) -> npt.NDArray[np.int32]:
-        """Summed-area table [rows + 1, columns + 1]: occupied in the first i rows, j columns."""
+        """Summed-area table [rows + 1, columns + 1]: counted in the first i rows, j columns."""
         if self._sums is None:
             sums = np.empty((self.rows + 1, self.columns + 1), np.int32)
-            heap_kernel.sum_up(self._near, sums)
+            counted = self._counted
+            heap_kernel.sum_up(self.occupied.view(np.uint8) if counted is None else counted, sums)
             self._sums = sums
         return self._sums
+
+    def count(self, row0: int, col0: int, change: npt.NDArray[np.int32]) -> None:
+        """Keeps P of Eq. 2 up: ``change`` (m, n) is 1 where the map has something new, -1 where it
+        has nothing any more, in the window at (row0, col0)."""
+        if self._sums is None or not change.any():
+            return
+        bottom, right = row0 + change.shape[0], col0 + change.shape[1]
+        more = change.cumsum(axis=0).cumsum(axis=1)
+        self._sums[row0 + 1 : bottom + 1, col0 + 1 : right + 1] += more
+        self._sums[row0 + 1 : bottom + 1, right + 1 :] += more[:, -1:]
+        self._sums[bottom + 1 :, col0 + 1 : right + 1] += more[-1]
+        self._sums[bottom + 1 :, right + 1 :] += more[-1, -1]
 
     @property
     def lines(self) -> tuple[jump_kernel.Words, jump_kernel.Words]:
@@ -118,12 +140,8 @@ class SearchGrid:
             return
         blocked[within] = mask
         find_near(blocked, self._near[top + 1 : end + 1, left + 1 : side + 1])
-        if self._sums is not None:
-            more = change.cumsum(axis=0).cumsum(axis=1)
-            self._sums[row0 + 1 : bottom + 1, col0 + 1 : right + 1] += more
-            self._sums[row0 + 1 : bottom + 1, right + 1 :] += more[:, -1:]
-            self._sums[bottom + 1 :, col0 + 1 : right + 1] += more[-1]
-            self._sums[bottom + 1 :, right + 1 :] += more[-1, -1]
+        if self._counted is None:
+            self.count(row0, col0, change)
         if self._lines is not None:
             self._pack(row0 + 1, col0 + 1, bottom + 1, right + 1)
         self._jumps = None
@@ -229,10 +247,10 @@ class SearchGrid:
             )
             return found, expanded
         sums = self.sums if terms.exponential else _NO_SUMS
+        wanted = kernel_terms(terms, start, goal or start, int(sums[-1, -1]), self._cell)
         found, expanded, self._pool, self._nodes = heap_kernel.search(
-            near, sums, *where, kernel_terms(terms, start, goal or start, int(sums[-1, -1])),
-            self._pool, self._nodes,
-        )  # fmt: skip
+            near, sums, *where, wanted, self._pool, self._nodes
+        )
         return found, expanded
 
     def _again(self, start: Cell, goal: Cell) -> SearchResult | None:
