@@ -6,7 +6,9 @@ import pytest
 from dynastar.bench import ablation, paper, terms
 from dynastar.bench.ablation import ARMS
 from dynastar.bench.families import Map, draw
-from dynastar.bench.runner import Mission, Options
+from dynastar.bench.runner import Mission, Options, choose_missions
+from dynastar.bench.statistics import wilson
+from dynastar.bench.suites import people
 from dynastar.bench.tables import as_text
 from dynastar.navigator import PRESETS, configured
 from dynastar.planning import HeuristicConfig, SearchGrid
@@ -33,7 +35,8 @@ def test_each_arm_differs_from_the_default_as_it_says():
     heuristic = "planner.heuristic."
     expected = {
         "default": set(),
-        "Eq. 2: all terms": {heuristic + "parent", heuristic + "q"},
+        "Eq. 2: k = 0": {heuristic + "k"},
+        "no exact improvement": {"planner.exact"},
         "Eq. 9: alpha = 0": {"dwa.weights.heading"},
         "Eq. 9: beta = 0": {"dwa.weights.dist"},
         "Eq. 9: gamma = 0": {"dwa.weights.vel"},
@@ -41,6 +44,10 @@ def test_each_arm_differs_from_the_default_as_it_says():
             f"dwa.weights.{name}" for name in ("heading", "dist", "vel", "simi")
         },
         "no risk": {"dwa.weights.risk"},
+        "bearing in place of cost-to-go": {"dwa.progress"},
+        "constant arcs, no tails": {"dwa.search"},
+        "constant arcs, bearing": {"dwa.search", "dwa.progress"},
+        "nothing tracked": {"track"},
         "no hysteresis": {"dwa.hysteresis"},
         "window of one period": {"dwa.reach"},
         "3 x 6 samples": {"dwa.v_samples", "dwa.omega_samples"},
@@ -60,17 +67,19 @@ def test_each_arm_differs_from_the_default_as_it_says():
         "path following alone": set(),
     }
     assert {arm: changed(settings(arm)) for arm in expected} == expected
-    assert settings("paper") == PRESETS["paper"]
+    for preset in PRESETS:
+        assert settings(preset) == PRESETS[preset]
     assert [arm for arm in ARMS if ARMS[arm].follows] == ["path following alone"]
-    terms_of = settings("Eq. 2: all terms").planner
     for arm in (arm for arm in ARMS if arm.startswith("Eq. 2: ")):
-        assert settings(arm)._replace(planner=terms_of) == settings("Eq. 2: all terms")
+        assert settings(arm)._replace(planner=DEFAULT.planner) == DEFAULT
+        assert settings(arm).planner.exact
     assert len({settings(arm) for arm in ARMS}) == len(ARMS) - 1  # the follower's are the default
 
 
 def test_of_eq_2_one_term_at_a_time_is_left_out():
     all_terms = HeuristicConfig()
-    assert settings("Eq. 2: all terms").planner.heuristic == all_terms
+    assert DEFAULT.planner.planner == "improved"
+    assert DEFAULT.planner.heuristic == all_terms
     for arm in ("k = 0", "beta as interior angle", "Q as a line", "P / Q around n", "no h(p)"):
         config = settings(f"Eq. 2: {arm}").planner
         assert config.planner == "improved"
@@ -86,6 +95,7 @@ def test_of_eq_2_one_term_at_a_time_is_left_out():
 
 def row(number, arm, outcome="arrived", length=30.0, time=60.0, **more):
     return {
+        "suite": "paper",
         "number": number,
         "arm": arm,
         "outcome": outcome,
@@ -103,28 +113,40 @@ ROWS = [
     row(4, "default", "contact", contacts_moving=1),
     row(4, "no replanning", length=50.0, time=90.0),
     row(5, "default", "timeout"),
-    {"number": 5, "arm": "no replanning", "outcome": "error", "reason": "E: x"},
+    {"suite": "paper", "number": 5, "arm": "no replanning", "outcome": "error", "reason": "E: x"},
+    row(6, "default", length=50.0, time=50.0),
+    row(6, "no replanning", length=50.0, time=100.0),
+    row(0, "default", suite="people"),
 ]
 
 
-def test_ratios_are_over_the_worlds_that_both_arrived_in():
+def test_ratios_are_world_by_world_over_those_that_both_arrived_in():
     found = ablation.summary(ROWS)
-    assert list(found) == ["default", "no replanning"]
-    default, once = found.values()
-    assert (default["missions"], default["arrived"], default["contacts_moving"]) == (4, 2, 1)
-    assert (default["timeouts"], default["length_ratio"], default["common"]) == (1, 1.0, 2)
-    assert (once["arrived"], once["blocked"], once["errors"], once["common"]) == (2, 1, 1, 1)
-    assert (once["mean_length"], once["mean_time"]) == (41.5, 90.0)
-    assert (once["length_ratio"], once["time_ratio"]) == (pytest.approx(1.1), 1.5)
-    nothing = ablation.summary([row(0, "paper", "error")])["paper"]
-    assert nothing["mean_length"] is nothing["length_ratio"] is None
+    assert list(found) == ["paper", "people"]
+    assert list(found["paper"]) == ["default", "no replanning"]
+    default, once = found["paper"].values()
+    assert (default["missions"], default["arrived"], default["contacts_moving"]) == (5, 3, 1)
+    assert (default["timeouts"], default["length_ratio"], default["common"]) == (1, 1.0, 3)
+    assert (once["arrived"], once["blocked"], once["errors"], once["common"]) == (3, 1, 1, 2)
+    assert once["mean_time"] == pytest.approx(280.0 / 3)
+    assert once["length_ratio"] == pytest.approx((1.1 + 1.0) / 2)
+    assert once["time_ratio"] == pytest.approx((1.5 + 2.0) / 2)
+    low, high = once["time_ratio_interval"]
+    assert (low, high) == pytest.approx((1.5, 2.0))
+    assert default["touched_interval"] == wilson(1, 5)
+    nothing = ablation.summary([row(0, "paper", "error")])["paper"]["paper"]
+    assert (
+        nothing["mean_length"] is nothing["length_ratio"] is nothing["time_ratio_interval"] is None
+    )
 
 
-def test_the_table_has_a_line_for_each_arm():
-    (table,) = ablation.tables(ROWS)
-    assert [cells[0] for cells in table.cells[1:]] == ["default", "no replanning"]
-    assert table.cells[2][-2:] == ["1.100", "1.500"]
-    assert "4 worlds" in as_text(table)
+def test_the_tables_have_a_line_for_each_arm_by_its_effect():
+    worse = [row(n, "no risk", "contact", contacts_resting=1) for n in (0, 2)]
+    of_paper, of_people = ablation.tables([*ROWS, *worse])
+    assert [cells[0] for cells in of_paper.cells[1:]] == ["default", "no risk", "no replanning"]
+    assert of_paper.cells[3][-2:] == ["1.750", "1.50 to 2.00"]
+    assert "5 worlds of the suite paper" in as_text(of_paper)
+    assert len(of_people.cells) == 2
 
 
 def test_rows_come_world_by_world_and_an_error_is_one(tmp_path, monkeypatch):
@@ -133,6 +155,7 @@ def test_rows_come_world_by_world_and_an_error_is_one(tmp_path, monkeypatch):
         raise RuntimeError("no")
 
     monkeypatch.setattr(ablation, "drive", drive)
+    monkeypatch.setattr(ablation, "SUITES", ("paper",))
     rows = ablation.run(2, 7, tmp_path / "out")
     assert [row["arm"] for row in rows] == list(ARMS) * 2
     assert len({row["number"] for row in rows[: len(ARMS)]}) == 1
@@ -148,6 +171,24 @@ def test_arms_drive_as_they_say():
     assert default["length"] == suites["length"]
     follower = ablation.fly(scenario, "path following alone")
     assert (follower["outcome"], follower["contacts_moving"]) == ("contact", 1)
+
+
+def test_in_the_people_suite_an_arm_keeps_the_suites_own_settings():
+    mission = choose_missions(people, Options(missions=1))[0][0]
+    scenario = people.scenario(mission, Options(), 0)
+    own = scenario.navigator["period"]
+    seen = []
+
+    def drive(scenario, navigator):
+        seen.append(scenario.navigator)
+        raise RuntimeError("no")
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ablation, "drive", drive)
+        ablation.fly(scenario, "no risk", {"comfort": 0.2})
+        ablation.fly(scenario, "period 0.2 s")
+    assert seen[0] == {**scenario.navigator, "comfort": 0.2, "dwa": {"weights": {"risk": 0.0}}}
+    assert (own, seen[1]["period"]) == (0.05, 0.2)
 
 
 def test_on_an_empty_map_all_terms_go_straight():

@@ -80,12 +80,18 @@ def test_ratios_are_over_what_arrived():
 def test_nothing_arrived_is_no_figure_and_no_error():
     found = table3.summary(ROWS[2:])
     assert found["length_ratio"] is found["mean_time"] is found["turning_ratio_of_means"] is None
-    for table in table3.tables(ROWS[2:], ROWS[-1]):
+    for table in table3.tables({"default": ROWS[2:], "printed": ROWS[2:]}, ROWS[-1]):
         assert table.title in as_text(table)
 
 
 def test_the_tables_have_the_printed_figures_beside():
-    own, many = table3.tables(ROWS, row(None, 28.0, 6, 32.0, 12))
+    by_preset = {"default": ROWS, "printed": ROWS[2:]}
+    own, many, presets = table3.tables(by_preset, row(None, 28.0, 6, 32.0, 12))
+    assert [cells[0] for cells in presets.cells] == ["", "default", "printed", "in print"]
+    assert presets.cells[1][1:3] == ["5", "2"]
+    assert presets.cells[1][7:] == ["1.000", "1.250", "60.0"]
+    assert presets.cells[2][7:] == ["", "", ""]
+    assert presets.cells[3][7:9] == ["0.879", "0.571"]
     assert own.cells[1:] == [
         ["improved A*, grid path", "32.0", "12", "33", "7"],
         ["hybrid", "28.0", "6", "29", "4"],

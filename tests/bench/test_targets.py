@@ -13,13 +13,18 @@ def found(value, arrived=99, moving=0):
     of_worlds = {"missions": 100, "arrived": arrived, "contacts_moving": moving}
     hybrid = {"length_ratio": figures, "turning_ratio": figures} if arrived else {}
     none = {"length_ratio": None, "turning_ratio": None}
-    return {"table1": kinds, "table1_512": kinds, "table3": {**of_worlds, **(hybrid or none)}}
+    return {
+        "table1": kinds,
+        "table1_512": kinds,
+        "table3": {**of_worlds, **(hybrid or none)},
+        "table3_presets": {"paper": of_worlds},
+    }
 
 
 @pytest.mark.parametrize(("value", "outcome"), [(0.12, "met"), (1.2, "missed")])
 def test_a_figure_up_to_its_target_meets_it(value, outcome):
     made = targets.table(found(value, 99 if outcome == "met" else 98, outcome == "missed"))
-    assert len(made.rows) == len(targets.TARGETS) == 15
+    assert len(made.rows) == len(targets.TARGETS) == 16
     assert {row[-1] for row in made.rows} == {outcome}
 
 

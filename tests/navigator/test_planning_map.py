@@ -185,7 +185,7 @@ def test_what_blocks_under_a_layer_is_the_maps_and_the_seen_and_all_off_the_map(
     made = mapped(grid)
     local_map = local_map_showing(SEEN_OCCUPIED, 3.8, 2.6, 4.2, 3.4, (2.0, 3.0), grid.frame)
     made.take_in(local_map)
-    under = made.blocked_under(local_map)
+    under = made.stands_in(local_map)
     assert under.shape == local_map.states.shape
     a, origin = local_map.config.resolution, np.array(local_map.origin)
     rows, columns = np.mgrid[: len(under) : 7, : len(under) : 7]
@@ -193,7 +193,8 @@ def test_what_blocks_under_a_layer_is_the_maps_and_the_seen_and_all_off_the_map(
         point = origin + a * (np.array([column, row]) + 0.5)
         cell = np.floor(grid.frame.points_to_grid(point[None]))[0].astype(int)
         inside = (cell >= 0).all() and (cell < made.prior.shape).all()
-        assert under[row, column] == (not inside or made.blocked[tuple(cell)])
+        hit = local_map.states[row, column] == SEEN_OCCUPIED
+        assert under[row, column] == (hit or not inside or made.blocked[tuple(cell)])
 
 
 @pytest.mark.parametrize("yaw", [0.0, 0.7])
@@ -233,7 +234,7 @@ def test_the_planning_map_takes_over_cell_by_cell_what_the_layer_shows(yaw, seed
     far.follow(500.0, 500.0)
     far.states[:] = SEEN_OCCUPIED
     assert not made.take_in(far)
-    assert made.blocked_under(far).all()
+    assert made.stands_in(far).all()
 
 
 def test_what_stands_in_a_wall_of_the_map_or_off_it_is_not_on_free_ground():

@@ -170,8 +170,8 @@ def test_what_eq_2_counts_may_be_another_mask_than_what_is_searched(seed):
     rng = np.random.default_rng(seed)
     row, column = (int(rng.integers(0, n)) for n in occupied.shape)
     patch = rng.random(mask[row : row + 5, column : column + 7].shape) < 0.5
-    grid.count(row, column, patch.astype(np.int32) - mask[row : row + 5, column : column + 7])
     mask[row : row + 5, column : column + 7] = patch
+    grid.recount()
     assert (grid.sums[1:, 1:] == mask.astype(int).cumsum(0).cumsum(1)).all()
     grid.update(row, column, ~occupied[row : row + 3, column : column + 3])
     assert (grid.sums[1:, 1:] == mask.astype(int).cumsum(0).cumsum(1)).all()

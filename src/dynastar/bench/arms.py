@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from dynastar.navigator import Preset
 from dynastar.planning import HeuristicConfig
 
 ALL_TERMS = HeuristicConfig()
@@ -21,10 +22,13 @@ TERMS: dict[str, tuple[str, HeuristicConfig]] = {
 }
 
 
+BASE_TERMS = "Eq. 2: all terms"  # what the default has
+
+
 class Arm(NamedTuple):
     """How a mission is driven: a preset, what differs from it, or by path following alone."""
 
-    preset: str = "default"
+    preset: Preset = "default"
     navigator: Mapping[str, Any] = {}
     follows: bool = False
 
@@ -48,12 +52,18 @@ def _weights(**weights: float) -> Arm:
 ARMS: dict[str, Arm] = {
     "default": Arm(),
     "paper": Arm("paper"),
-    **{name: _terms(*terms) for name, terms in TERMS.items()},
+    "printed": Arm("printed"),
+    **{name: _terms(*terms) for name, terms in TERMS.items() if terms != TERMS[BASE_TERMS]},
+    "no exact improvement": _navigator(planner={"exact": False}),
     "Eq. 9: alpha = 0": _weights(heading=0.0),
     "Eq. 9: beta = 0": _weights(dist=0.0),
     "Eq. 9: gamma = 0": _weights(vel=0.0),
     "Eq. 9: weights as printed": _weights(heading=0.5, dist=0.2, vel=0.2, simi=0.1),
     "no risk": _weights(risk=0.0),
+    "bearing in place of cost-to-go": _window(progress="bearing"),
+    "constant arcs, no tails": _window(search="arcs"),
+    "constant arcs, bearing": _window(search="arcs", progress="bearing"),
+    "nothing tracked": _navigator(track=False),
     "no hysteresis": _window(hysteresis=0.0),
     "window of one period": _window(reach=0.0),
     "3 x 6 samples": _window(v_samples=3, omega_samples=6),

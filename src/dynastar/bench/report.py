@@ -12,6 +12,7 @@ from dynastar.bench.families import KINDS
 from dynastar.bench.figures import SUFFIXES, draw_all
 from dynastar.bench.tables import Table, as_markdown
 from dynastar.io.files import written_aside
+from dynastar.navigator import Preset
 from dynastar.viewer.sheet import save
 from dynastar.viewer.spread import Column, Spread, draw_columns, draw_spreads
 
@@ -83,9 +84,18 @@ def report_table1(asked: Asked) -> Report:
 
 
 def report_table3(asked: Asked) -> Report:
-    """Table III: in the own world, and over many."""
+    """Table III: in the own world, and over many, by each preset; a tenth as many as printed."""
     seed, folder, workers, progress, settings = asked[2:]
-    rows = table3.run(asked.maps, seed, folder, workers, progress, settings=settings)
+    worlds: dict[Preset, int] = {
+        "default": asked.maps,
+        "paper": asked.maps,
+        "printed": -(-asked.maps // 10),
+    }
+    by_preset: dict[str, list[dict[str, Any]]] = {
+        preset: table3.run(count, seed, folder, workers, progress, preset, settings)
+        for preset, count in worlds.items()
+    }
+    rows = by_preset["default"]
     own = table3.own_row(settings=settings)
     arrived = [row for row in rows if row["outcome"] == "arrived"]
     alone, hybrid = table3.PRINTED["improved"], table3.PRINTED["hybrid"]
@@ -93,15 +103,19 @@ def report_table3(asked: Asked) -> Report:
         "length ratio": (table3.length_ratio, hybrid[0] / alone[0]),
         "turning points ratio": (table3.turning_ratio, hybrid[1] / alone[1]),
     }
-    worlds = f"{len(arrived)} worlds"
+    label_of = f"{len(arrived)} worlds"
     return Report(
         "table3",
-        {"table3": table3.summary(rows), "table3_own": own},
-        table3.tables(rows, own),
-        {"table3": rows},
+        {
+            "table3": table3.summary(rows),
+            "table3_presets": {name: table3.summary(of) for name, of in by_preset.items()},
+            "table3_own": own,
+        },
+        table3.tables(by_preset, own),
+        {f"table3-{name}": of for name, of in by_preset.items()},
         draw_spreads(
             [
-                Spread(label, {worlds: [ratio(row) for row in arrived]}, printed, reference=1.0)
+                Spread(label, {label_of: [ratio(row) for row in arrived]}, printed, reference=1.0)
                 for label, (ratio, printed) in measures.items()
             ]
         )
@@ -116,23 +130,35 @@ def report_ablation(asked: Asked) -> Report:
     on_maps = terms.run(asked.maps, seed, folder, workers, progress=progress)
     rows = ablation.run(asked.worlds, seed, folder, workers, progress, settings)
     found = ablation.summary(rows)
-
-    def column(label: str, of: Callable[[dict[str, Any]], float | None], format_: str) -> Column:
-        return Column(label, {arm: of(figures) for arm, figures in found.items()}, format_)
-
-    columns = [
-        column("arrived, %", lambda arm: 100.0 * arm["arrived"] / arm["missions"], ".0f"),
-        column("touched", lambda arm: arm["contacts_moving"] + arm["contacts_resting"], ".0f"),
-        column("length / default's", lambda arm: arm["length_ratio"], ".2f"),
-        column("time / default's", lambda arm: arm["time_ratio"], ".2f"),
-    ]
     return Report(
         "ablation",
         {"ablation": found, "terms": terms.summary(on_maps)},
         [*terms.tables(on_maps), *ablation.tables(rows)],
         {"ablation": rows, "terms": on_maps},
-        draw_columns(columns, best=ablation.BASE),
+        draw_columns(_columns(found), best=ablation.BASE),
     )
+
+
+def _columns(found: Mapping[str, Mapping[str, Any]]) -> list[Column]:
+    """What the ablation's picture shows: for each suite, the arms by the first one's effect."""
+    order = ablation.by_effect(next(iter(found.values())))
+    shown: dict[str, tuple[Callable[[Mapping[str, Any]], float | None], str]] = {
+        "arrived, %": (lambda of: 100.0 * of["arrived"] / of["missions"], ".0f"),
+        "touched, %": (
+            lambda of: 100.0 * (of["contacts_moving"] + of["contacts_resting"]) / of["missions"],
+            ".0f",
+        ),
+        "time / default's": (lambda of: of["time_ratio"], ".2f"),
+    }
+    return [
+        Column(
+            f"{suite}: {label}",
+            {arm: of(arms[arm]) if arm in arms else None for arm in order},
+            format_,
+        )
+        for suite, arms in found.items()
+        for label, (of, format_) in shown.items()
+    ]
 
 
 def report_figures(asked: Asked) -> Report:

@@ -1,6 +1,5 @@
 """What the rows of a suite add up to, with intervals."""
 
-import math
 import statistics
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
@@ -10,18 +9,17 @@ import numpy as np
 Row = Mapping[str, Any]
 Interval = tuple[float, float]
 
-Z_95 = 1.959963984540054  # two-sided 95 % of a normal distribution
-RESAMPLES = 10_000
+RESAMPLES = 9_999
 
 
-def wilson(successes: int, trials: int, z: float = Z_95) -> Interval | None:
-    """Wilson's score interval of a proportion [Wilson1927]; None without trials."""
+def wilson(successes: int, trials: int) -> Interval | None:
+    """Wilson's 95 % score interval of a proportion [Wilson1927]; None without trials."""
     if trials == 0:
         return None
-    p, n = successes / trials, trials
-    middle = (p + z * z / (2 * n)) / (1 + z * z / n)
-    half = z / (1 + z * z / n) * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
-    return max(0.0, middle - half), min(1.0, middle + half)
+    from scipy.stats import binomtest
+
+    found = binomtest(successes, trials).proportion_ci(0.95, method="wilson")
+    return float(found.low), float(found.high)
 
 
 def mcnemar(only_first: int, only_second: int) -> float:
@@ -30,9 +28,10 @@ def mcnemar(only_first: int, only_second: int) -> float:
     Of the pairs that differ, ``only_first`` are successes of the first alone, ``only_second`` of the
     second.
     """
-    n, fewer = only_first + only_second, min(only_first, only_second)
-    tail = sum(math.comb(n, k) for k in range(fewer + 1))
-    return min(1.0, 2 * tail / 2**n)
+    from scipy.stats import binomtest
+
+    n = only_first + only_second
+    return float(binomtest(only_first, n).pvalue) if n else 1.0
 
 
 def bootstrap(values: Sequence[float]) -> Interval | None:
@@ -42,11 +41,13 @@ def bootstrap(values: Sequence[float]) -> Interval | None:
     """
     if len(values) < 2:
         return None
-    array = np.asarray(values, dtype=np.float64)
+    from scipy.stats import bootstrap as resample
+
     random = np.random.default_rng(0)
-    means = [array[random.integers(0, len(array), len(array))].mean() for _ in range(RESAMPLES)]
-    low, high = np.percentile(means, [2.5, 97.5])
-    return float(low), float(high)
+    found = resample(
+        (values,), np.mean, n_resamples=RESAMPLES, method="percentile", random_state=random
+    ).confidence_interval
+    return float(found.low), float(found.high)
 
 
 def succeeded(row: Row) -> bool:

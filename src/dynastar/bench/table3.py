@@ -11,9 +11,11 @@ import numpy as np
 from dynastar.bench import paper
 from dynastar.bench.rows import collect, version
 from dynastar.bench.runner import Options, choose_missions, row_of
+from dynastar.bench.statistics import wilson
 from dynastar.bench.tables import Cell, Table, spread_of
 from dynastar.grid import OccupancyGrid
 from dynastar.metrics import measure
+from dynastar.navigator import Preset
 from dynastar.planning import GridPlanner, plan
 from dynastar.simulation import Scenario
 from dynastar.simulation import run as drive
@@ -30,7 +32,7 @@ def run(
     folder: Path,
     workers: int = 1,
     progress: bool = False,
-    preset: str = "default",
+    preset: Preset = "default",
     settings: Mapping[str, Any] | None = None,
 ) -> list[Row]:
     """The rows of the suite's first ``missions`` worlds that its rule does not leave out.
@@ -42,14 +44,15 @@ def run(
     chosen, _ = choose_missions(paper, Options(missions=missions, seed=seed))
     jobs = [mission.number for mission in chosen]
     modules = ("table3", "paper", "own_maps")
-    run_of = {"table": 3, "seed": seed, "preset": preset, "version": version(*modules)}
+    run_of: Row = {"table": 3, "seed": seed, "preset": preset, "version": version(*modules)}
     run_of |= {"settings": settings} if settings else {}
     work = partial(_row, seed=seed, preset=preset, settings=settings or {})
-    return collect("table3", work, jobs, folder / "table3.jsonl", run_of, workers, progress)
+    file = folder / f"table3-{preset}.jsonl"
+    return collect(f"table3, {preset}", work, jobs, file, run_of, workers, progress)
 
 
 def own_row(
-    preset: str = "default", seed: int = 0, settings: Mapping[str, Any] | None = None
+    preset: Preset = "default", seed: int = 0, settings: Mapping[str, Any] | None = None
 ) -> Row:
     """The row of the project's own world; it has no number."""
     return {"number": None, **_both(paper.own_world(), preset, seed, settings or {})}
@@ -127,9 +130,51 @@ def summary(rows: Sequence[Row]) -> dict[str, Any]:
     }
 
 
-def tables(rows: Sequence[Row], own_row: Row) -> list[Table]:
-    """The own world's table in the paper's form, and the spread over many worlds."""
-    return [_own_table(own_row), _spread_table(rows)]
+def tables(rows: Mapping[str, Sequence[Row]], own_row: Row) -> list[Table]:
+    """The own world's table in the paper's form, the default's spread over many, and all presets."""
+    return [_own_table(own_row), _spread_table(rows["default"]), _presets_table(rows)]
+
+
+def _presets_table(rows: Mapping[str, Sequence[Row]]) -> Table:
+    lines: list[tuple[Cell, ...]] = []
+    for preset, of in rows.items():
+        found = summary(of)
+        lengths, turns = found["length_ratio"] or {}, found["turning_ratio"] or {}
+        interval = wilson(found["arrived"], found["missions"])
+        assert interval is not None
+        lines.append(
+            (
+                preset,
+                found["missions"],
+                found["arrived"],
+                f"{100.0 * interval[0]:.1f} to {100.0 * interval[1]:.1f}",
+                found["contacts_moving"],
+                found["contacts_resting"],
+                found["timeouts"] + found["blocked"] + found["errors"],
+                lengths.get("median"),
+                turns.get("median"),
+                found["mean_time"],
+            )
+        )
+    lines.append(("in print", *([None] * 6), *_printed_ratios(), None))
+    return Table(
+        "table3-presets",
+        "Table III by preset",
+        (
+            ("", ""),
+            ("worlds", "d"),
+            ("arrived", "d"),
+            ("95 %, %", ""),
+            ("hit moving", "d"),
+            ("at rest", "d"),
+            ("late, blocked", "d"),
+            ("length ratio", ".3f"),
+            ("turns ratio", ".3f"),
+            ("mean s", ".1f"),
+        ),
+        lines,
+        "Ratios to the improved A*'s grid path are medians over the worlds in which the preset arrived.",
+    )
 
 
 def _own_table(row: Row) -> Table:
@@ -201,13 +246,13 @@ def _five(values: Sequence[float]) -> list[float | None]:
     return [float(q) for q in np.quantile(values, (0.5, 0.25, 0.75, 0.95, 1.0))]
 
 
-def _row(number: int, seed: int, preset: str, settings: Mapping[str, Any]) -> Row:
+def _row(number: int, seed: int, preset: Preset, settings: Mapping[str, Any]) -> Row:
     made = paper.world(seed, number)
     assert isinstance(made, Scenario)
     return {"number": number, **_both(made, preset, seed, settings)}
 
 
-def _both(scenario: Scenario, preset: str, seed: int, settings: Mapping[str, Any]) -> Row:
+def _both(scenario: Scenario, preset: Preset, seed: int, settings: Mapping[str, Any]) -> Row:
     changes = {"preset": preset, "seed": seed, "navigator": settings}
     driven = Scenario(**{**vars(scenario), **changes})
     return {**row_of(lambda: measure(drive(driven))._asdict()), **grid_way(scenario)}

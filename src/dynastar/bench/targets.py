@@ -30,6 +30,11 @@ def _lost(found: Found) -> float:
     return float(worlds["missions"] - worlds["arrived"]) / float(worlds["missions"])
 
 
+def _paper_touched(found: Found) -> float:
+    worlds = found["table3_presets"]["paper"]
+    return float(worlds["contacts_moving"]) / float(worlds["missions"])
+
+
 TARGETS = (
     Target("cells, median, random", 0.13, _table1("random", "expanded_ratio", "median")),
     Target("cells, median, all", 0.25, _table1("all", "expanded_ratio", "median")),
@@ -51,6 +56,7 @@ TARGETS = (
         _table1("all", "total_time_ratio", "median", f"table1_{LARGE}"),
     ),
     Target("touched while moving", 0.0, lambda found: float(found["table3"]["contacts_moving"])),
+    Target("preset paper: share touched while moving", 0.002, _paper_touched),
     Target("share that did not arrive", 0.01, _lost),
     Target("hybrid: length, median", 0.93, _table3("length_ratio", "median")),
     Target("hybrid: turning points, median", 0.57, _table3("turning_ratio", "median")),

@@ -11,6 +11,7 @@ if TYPE_CHECKING:  # neither is imported for --help
     from pathlib import Path
     from typing import NoReturn
 
+PRESETS = ("default", "paper", "printed")  # those of dynastar.navigator
 # The names in dynastar.bench.runner.SUITES, which would import too much for --help.
 SUITES = (
     "movingai",
@@ -217,7 +218,7 @@ def _add_run(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
     run.add_argument("scenario", metavar="SCENARIO.toml", type=path)
     run.add_argument("--out", type=path, metavar="DIR", help="default out/<scenario's name>")
     run.add_argument("--seed", type=seed, metavar="N", help="instead of the scenario's")
-    run.add_argument("--preset", choices=("default", "paper"), help="instead of the scenario's")
+    run.add_argument("--preset", choices=PRESETS, help="instead of the scenario's")
     run.add_argument("--json", action="store_true", help="JSON on stdout instead of a table")
     run.add_argument("--no-gif", action="store_true", help="leave out the animation")
     _add_set(run)
@@ -251,7 +252,7 @@ def _add_bench(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
         "--select", metavar="A:B:C", help="a slice over the suite's own numbers, or one of them"
     )
     bench.add_argument("--seed", type=seed, default=0, metavar="N")
-    bench.add_argument("--preset", choices=("default", "paper"), default="default")
+    bench.add_argument("--preset", choices=PRESETS, default="default")
     bench.add_argument(
         "--ideal", action="store_true", help="without range noise and without latency"
     )

@@ -91,6 +91,57 @@ def add_moving(cost, frame, people, timing, robot, radius, speed):
 
 
 @njit(cache=True)
+def nearest_open(cost, row, column, reach):
+    """The nearest cell where the robot fits, up to ``reach`` cells away, else the cell itself."""
+    rows, columns = cost.shape
+    if cost[row, column] < np.inf:
+        return row, column
+    best_row, best_column, nearest = row, column, 2 * reach * reach + 1
+    for i in range(max(row - reach, 0), min(row + reach + 1, rows)):
+        for j in range(max(column - reach, 0), min(column + reach + 1, columns)):
+            square = (i - row) * (i - row) + (j - column) * (j - column)
+            if cost[i, j] < np.inf and square < nearest:
+                best_row, best_column, nearest = i, j, square
+    return best_row, best_column
+
+
+@njit(cache=True)
+def leave(points, arc, span, cost, frame, reach):
+    """The cell (row, column) where a path leaves the field, or ends, and how far along it that is (m).
+
+    Looked at are places half a cell apart from ``span[0]`` to ``span[1]`` m along the path (n, 2); the
+    last before it leaves for the first time counts, or the next one back with a cell where the robot
+    fits within ``reach`` cells.
+    """
+    resolution, x0, y0 = frame
+    rows, columns = cost.shape
+    begin, end = span
+    count = max(2, int(math.ceil((end - begin) / (0.5 * resolution))) + 1)
+    cells = np.empty((count, 2), np.int64)
+    last, segment = count - 1, 0
+    for k in range(count):
+        s = begin + (end - begin) * k / (count - 1)
+        while segment < len(arc) - 2 and arc[segment + 1] < s:
+            segment += 1
+        x, y = points[segment, 0], points[segment, 1]
+        if len(arc) > 1:
+            length = max(arc[segment + 1] - arc[segment], 1e-12)
+            share = min(max((s - arc[segment]) / length, 0.0), 1.0)
+            x += share * (points[segment + 1, 0] - x)
+            y += share * (points[segment + 1, 1] - y)
+        row, column = int(math.floor((y - y0) / resolution)), int(math.floor((x - x0) / resolution))
+        cells[k, 0], cells[k, 1] = min(max(row, 0), rows - 1), min(max(column, 0), columns - 1)
+        if not (2 <= row < rows - 2 and 2 <= column < columns - 2):
+            last = max(k - 1, 0)
+            break
+    for k in range(last, -1, -1):
+        row, column = nearest_open(cost, cells[k, 0], cells[k, 1], reach)
+        if cost[row, column] < np.inf:
+            return row, column, begin + (end - begin) * k / (count - 1)
+    return cells[last, 0], cells[last, 1], begin + (end - begin) * last / (count - 1)
+
+
+@njit(cache=True)
 def value_at(ahead, x, y):
     """The cost-to-go (m) at a point: bilinear between the cells where it is known."""
     rows, columns = ahead.value.shape

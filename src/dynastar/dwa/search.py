@@ -11,6 +11,7 @@ from dynastar.dwa.admissible import ADMISSIBLE, MOVER, certified_stop, rests_in_
 from dynastar.dwa.motion import slew
 from dynastar.dwa.objective import objective
 from dynastar.dwa.rollout import (
+    DROPPED,
     LOOKS,
     SCORED,
     TOUCHED,
@@ -120,7 +121,7 @@ def search(scene, rules, state, n, buffers):
             continue
         has_to_pass = refused[i] == MOVER
         scores[:] = -np.inf
-        least = highest = -np.inf
+        least = -np.inf  # of ``scores``; a tail that stays below adds nothing
         change = 0.0 if i == n else span.hysteresis
         for kind in range(6):
             tail, long = kind % 3, kind >= 3
@@ -136,21 +137,23 @@ def search(scene, rules, state, n, buffers):
             elif not worth_holding(sample, limits, tail, long, people):
                 continue
             manoeuvre = (sample[0], sample[1], held, tail, has_to_pass)
-            enough = least if people else max(best_score, score[i]) + change
-            gauge = (begin, scale, enough)
+            enough = least if people and least > -np.inf else max(best_score, score[i])
+            gauge = (begin, scale, enough + change)
             outcome = future(scene, rules, state, manoeuvre, gauge, found, worst)
             if outcome != TOUCHED:
                 refused[i] = ADMISSIBLE
+            if people and outcome == DROPPED and kind == 0:
+                break  # no other tail gets further
             if outcome == SCORED:
                 total = objective(weights, found) - change
-                if total > highest:
-                    highest = score[i] = total
+                if total > score[i]:
+                    score[i] = total
                     terms[i] = found
                     holds[i] = scene.last.hold if i == n else held * span.step
                     tails[i] = tail
                 if people:
                     least = raise_scores(scores, total + weights[4] * found[4], worst, weights[4])
-        if people and highest > -np.inf:
+        if least > -np.inf:
             score[i] = contingent(scores, scene.people.weights)
         if score[i] > best_score:
             best, best_score = i, score[i]

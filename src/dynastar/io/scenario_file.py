@@ -9,7 +9,7 @@ import re
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 from dynastar import simulation
 from dynastar.config import Field, checked, choose, nearest, shown
@@ -20,6 +20,7 @@ from dynastar.grid import OccupancyGrid, Unknown
 from dynastar.io.files import MAX_TABLE_BYTES, read_bytes
 from dynastar.io.maps import load_map
 from dynastar.io.scenario_things import Metres, contains, read_mover, read_obstacle
+from dynastar.navigator import Preset
 from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot
 from dynastar.simulation.scenario import Noise, Scenario
 
@@ -42,7 +43,7 @@ class ScenarioTable(NamedTuple):
     unknown: Annotated[Unknown, Field("whether to plan through unknown space")] = "blocked"
     goal_tolerance: Annotated[float, Field("so near is there", "m", 0.01, 5.0)] = 0.25
     heading_tolerance: Annotated[float, Field("so well aligned is aligned", "rad", 0.01, 3.2)] = 0.1
-    preset: Annotated[Literal["default", "paper"], Field("the navigator's settings")] = "default"
+    preset: Annotated[Preset, Field("the navigator's settings")] = "default"
     sensor: Any = None
     obstacles: Any = None
     movers: Any = None

@@ -1,6 +1,6 @@
 """The hybrid navigator of section V, and what goes in and comes out of it."""
 
-from dynastar.navigator.config import PRESETS, NavigatorConfig, configured
+from dynastar.navigator.config import PRESETS, NavigatorConfig, Preset, configured
 from dynastar.navigator.navigator import Navigator
 from dynastar.navigator.status import STATES, RobotState, State, Status
 
@@ -9,6 +9,7 @@ __all__ = [
     "STATES",
     "Navigator",
     "NavigatorConfig",
+    "Preset",
     "RobotState",
     "State",
     "Status",

@@ -46,6 +46,7 @@ class NavigatorConfig(NamedTuple):
     prediction: PredictionConfig = PredictionConfig()
 
 
+Preset = Literal["default", "paper", "printed"]
 PRESETS: dict[str, NavigatorConfig] = {
     "default": NavigatorConfig(),
     "paper": NavigatorConfig(

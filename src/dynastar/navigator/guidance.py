@@ -8,7 +8,16 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.clearance import lower_bounds
-from dynastar.dwa.cost_to_go import add_moving, descend, favour, trace, travel_cost, value_at
+from dynastar.dwa.cost_to_go import (
+    add_moving,
+    descend,
+    favour,
+    leave,
+    nearest_open,
+    trace,
+    travel_cost,
+    value_at,
+)
 from dynastar.dwa.marching import extend, march, queue_for
 from dynastar.dwa.scene import CostToGo, DistanceField
 from dynastar.path import Path
@@ -98,7 +107,7 @@ class Guidance:
         favour(self._cost, (a, x0, y0), self.line, FAVOUR)
         row = min(max(int((here[1] - y0) / a), 0), n - 1)
         column = min(max(int((here[0] - x0) / a), 0), n - 1)
-        stop = self._nearest_open(row, column, NEAR)
+        stop = nearest_open(self._cost, row, column, NEAR)
         seed = self._seed(lead, x0, y0)
         march(self._cost, a, seed, stop, BEYOND, self._value, self._queue)
         self.reachable = bool(np.isfinite(self._value[stop]))
@@ -120,29 +129,9 @@ class Guidance:
 
     def _seed(self, lead: Lead, x0: float, y0: float) -> tuple[int, int, float]:
         """The cell where the path leaves the local map, or ends, and the length (m) left from there."""
-        a, n, path, s = self.spacing, len(self._cost), lead.path, lead.s
-        end = min(path.length, s + lead.ahead)
-        points = path.resampled(s, end, 0.5 * a)
-        left = np.linspace(path.length - s, path.length - end, len(points))
-        cells = np.floor((points - (x0, y0)) / a).astype(int)
-        out = np.flatnonzero(~((cells >= 2) & (cells < n - 2)).all(axis=1))
-        last = len(points) - 1 if len(out) == 0 else max(int(out[0]) - 1, 0)
-        cells = np.clip(cells, 0, n - 1)
-        for i in range(last, -1, -1):
-            column, row = map(int, cells[i])
-            row, column = self._nearest_open(row, column, NEAR // 2)
-            if math.isfinite(self._cost[row, column]):
-                return row, column, float(left[i])
-        return int(cells[last, 1]), int(cells[last, 0]), float(left[last])
-
-    def _nearest_open(self, row: int, column: int, reach: int) -> tuple[int, int]:
-        """The nearest cell where the robot fits, up to ``reach`` cells away, else the cell itself."""
-        if math.isfinite(self._cost[row, column]):
-            return row, column
-        top, left = max(row - reach, 0), max(column - reach, 0)
-        part = self._cost[top : row + reach + 1, left : column + reach + 1]
-        rows, columns = np.nonzero(np.isfinite(part))
-        if len(rows) == 0:
-            return row, column
-        k = int(np.argmin(np.hypot(rows + top - row, columns + left - column)))
-        return int(rows[k] + top), int(columns[k] + left)
+        path, s = lead.path, lead.s
+        span = s, min(path.length, s + lead.ahead)
+        row, column, at = leave(
+            path.points, path.arc, span, self._cost, (self.spacing, x0, y0), NEAR // 2
+        )
+        return int(row), int(column), path.length - float(at)

@@ -24,7 +24,6 @@ from dynastar.navigator.sensing import Sensing
 from dynastar.navigator.status import RobotState, Status
 from dynastar.path import Path
 from dynastar.perception import MovingObstacle
-from dynastar.perception.local_map import SEEN_OCCUPIED
 from dynastar.perception.prediction import predict
 from dynastar.planning import Planner
 from dynastar.robot import Robot, slew
@@ -211,7 +210,7 @@ class Navigator:
         """What the window is judged against, as of the time from which a command acts."""
         config, limits, local = self.config, self.robot.limits, self.sensing.local_map
         span = self.window.span
-        occupied = (local.states == SEEN_OCCUPIED) | self.planning_map.blocked_under(local)
+        occupied = self.planning_map.stands_in(local)
         moving = self.sensing.moving(state.stamp, movers)
         people = predict(moving, config.prediction, config.latency, span.step, span.horizon_steps)
         lead = self.route.lead(limits.v_max * span.step * span.horizon_steps)

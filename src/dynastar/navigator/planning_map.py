@@ -53,7 +53,7 @@ class PlanningMap:
         self.exact = "auto" if config.planner.exact and planner is None else ""
         self.seen = np.zeros(self.prior.shape, np.bool_)
         self.cleared = np.zeros(self.prior.shape, np.bool_)
-        self._marks = np.zeros(self.prior.shape, np.uint8)
+        self._marks = np.zeros(self.prior.size + 1, np.uint8)
         self._under: tuple[tuple[float, float], Window] | None = None
         near = inflate(self.grid.occupied, 1.0, outside_blocked=True)
         self.known = Known(near, self.frame)
@@ -75,12 +75,12 @@ class PlanningMap:
         self._mark(top, bottom, left, right)
         return True
 
-    def blocked_under(self, layer: LocalMap) -> Mask:
-        """Whether something stands under each of a local map's cells; off the planning map it does."""
+    def stands_in(self, layer: LocalMap) -> Mask:
+        """Whether something is in each of a local map's cells: seen there, mapped, or off the map."""
         under = self._window(layer)[2]
-        blocked = np.empty(under.shape, np.bool_)
-        stands_under(under, self.prior, self.seen, self.cleared, blocked)
-        return blocked
+        stands = np.empty(under.shape, np.bool_)
+        stands_under(layer.states, under, self.prior, self.seen, self.cleared, stands)
+        return stands
 
     def on_free_ground(self, points: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Those of the points (n, 2 or more), metres, where the map has nothing."""

@@ -5,9 +5,7 @@ import math
 import numpy as np
 
 from dynastar.compiled import njit
-from dynastar.perception.local_map import SEEN_FREE, SEEN_OCCUPIED, UNSEEN
-
-OFF = -1  # the index of what lies off the planning map
+from dynastar.perception.local_map import SEEN_FREE, SEEN_OCCUPIED
 
 
 @njit(cache=True)
@@ -15,7 +13,8 @@ def cells_under(n, resolution, x0, y0, frame_resolution, frame_x, frame_y, yaw, 
     """The planning map's cell under each of a local map's, and the window [low, high) they are in.
 
     The local map has n x n cells and its low corner at (x0, y0); the frame is the planning map's,
-    of rows x columns cells. A cell is an index (n, n) into the flattened planning map, or ``OFF``.
+    of rows x columns cells. A cell is an index (n, n) into the flattened planning map, or the one
+    behind its last for what lies off it.
     """
     cos, sin = math.cos(yaw), math.sin(yaw)
     low, high = np.array((rows, columns), np.int64), np.zeros(2, np.int64)
@@ -27,7 +26,7 @@ def cells_under(n, resolution, x0, y0, frame_resolution, frame_x, frame_y, yaw, 
             row = int(math.floor((cos * dy - sin * dx) / frame_resolution))
             column = int(math.floor((cos * dx + sin * dy) / frame_resolution))
             inside = 0 <= row < rows and 0 <= column < columns
-            under[i, j] = row * columns + column if inside else OFF
+            under[i, j] = row * columns + column if inside else rows * columns
             if inside:
                 low[0], low[1] = min(low[0], row), min(low[1], column)
                 high[0], high[1] = max(high[0], row + 1), max(high[1], column + 1)
@@ -39,14 +38,16 @@ def take_over(states, under, low, high, marks, known, unknown, seen, cleared):
     """Brings ``seen`` and ``cleared`` up to date; returns the window (row, end, column, end) that changed.
 
     Seen is what a local map's ``states`` show occupied off the ``known`` obstacles, until they show it
-    free; cleared is what they show free of the ``unknown``. ``marks`` is room to work in.
+    free; cleared is what they show free of the ``unknown``. ``marks`` (rows * columns + 1,) is room
+    to work in.
     """
+    shape = known.shape
+    flat, marks = marks, marks[: shape[0] * shape[1]].reshape(shape)
     marks[low[0] : high[0], low[1] : high[1]] = 0
-    flat = marks.reshape(-1)
     for i in range(states.shape[0]):
+        row_states, row_under = states[i], under[i]
         for j in range(states.shape[1]):
-            if states[i, j] != UNSEEN and under[i, j] != OFF:
-                flat[np.uint64(under[i, j])] |= states[i, j]
+            flat[np.uint64(row_under[j])] |= row_states[j]  # unseen is 0
     top, bottom, left, right = int(high[0]), int(low[0]), int(high[1]), int(low[1])
     first = np.uint64(low[1])
     for row in range(low[0], high[0]):
@@ -69,10 +70,17 @@ def take_over(states, under, low, high, marks, known, unknown, seen, cleared):
 
 
 @njit(cache=True)
-def stands_under(under, prior, seen, cleared, blocked):
-    """Fills ``blocked`` (n, n): whether each of a local map's cells is occupied or off the map."""
+def stands_under(states, under, prior, seen, cleared, stands):
+    """Fills ``stands`` (n, n): whether something is in each of a local map's cells.
+
+    It is seen there, or stands on the map under it, or lies off the map.
+    """
     prior, seen, cleared = prior.reshape(-1), seen.reshape(-1), cleared.reshape(-1)
+    off = prior.size
     for i in range(under.shape[0]):
+        row_states, row_under, row_stands = states[i], under[i], stands[i]
         for j in range(under.shape[1]):
-            at = under[i, j]
-            blocked[i, j] = at == OFF or (prior[at] and not cleared[at]) or seen[at]
+            at = np.uint64(row_under[j])
+            row_stands[j] = row_states[j] == SEEN_OCCUPIED or at == off
+            if not row_stands[j]:
+                row_stands[j] = (prior[at] and not cleared[at]) or seen[at]

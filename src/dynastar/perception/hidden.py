@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.clearance import FAR
+from dynastar.compiled import njit
 
 Floats = npt.NDArray[np.float32]
 
@@ -41,6 +42,11 @@ class HiddenSpace:
         self._resolution = resolution * FACTOR
         self._cleared_until = np.full((n, n), -np.inf)
         self._distance = np.full((n, n), 0.0, np.float32)
+        self._masks = (
+            np.empty((n, n), np.bool_),
+            np.empty((n, n), np.uint8),
+            np.empty((n, n), np.uint8),
+        )
         self._corner = (0, 0)
 
     def forget(self) -> None:
@@ -58,25 +64,17 @@ class HiddenSpace:
 
         ``corner`` is the lattice index (row, column) of the local map's first cell.
         """
-        n = len(self._cleared_until)
         self._shift(corner)
-        rows = slice(0, n * FACTOR)
-        seen = block_all(seen_free[rows, rows])
-        solid = block_any(occupied[rows, rows])
-        cleared = seen | (self._cleared_until > now)
-        a = self._resolution
-        near_cleared = cv2.distanceTransform((~cleared).astype(np.uint8), cv2.DIST_L2, 5) * a
-        near_solid = cv2.distanceTransform((~solid).astype(np.uint8), cv2.DIST_L2, 5) * a
-        bodies = (near_cleared >= HIDDEN_RADIUS) & (near_solid >= HIDDEN_RADIUS)
-        bodies &= near_cleared <= near_solid + a
-        if bodies.any():
-            self._distance = cv2.distanceTransform((~bodies).astype(np.uint8), cv2.DIST_L2, 5) * a
+        cleared_until, a = self._cleared_until, self._resolution
+        seen, uncleared, soft = self._masks
+        sort_cells(seen_free, occupied, cleared_until, now, seen, uncleared, soft)
+        near_cleared = cv2.distanceTransform(uncleared, cv2.DIST_L2, 5)
+        near_solid = cv2.distanceTransform(soft, cv2.DIST_L2, 5)
+        if find_bodies(near_cleared, near_solid, HIDDEN_RADIUS / a, uncleared):
+            self._distance = cv2.distanceTransform(uncleared, cv2.DIST_L2, 5) * np.float32(a)
         else:
-            self._distance = np.full((n, n), FAR, np.float32)
-        reach = np.maximum(self._distance - HIDDEN_RADIUS, 0.0)
-        self._cleared_until = np.where(
-            seen, now + reach / max(self.speed, 1e-6), self._cleared_until
-        )
+            self._distance = np.full(cleared_until.shape, FAR, np.float32)
+        keep_clear(cleared_until, seen, self._distance, HIDDEN_RADIUS, now, max(self.speed, 1e-6))
         return Hidden(
             np.ascontiguousarray(self._distance, np.float32),
             corner[1] * a / FACTOR,
@@ -102,11 +100,48 @@ class HiddenSpace:
         self._cleared_until = moved
 
 
-def block_all(mask: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """Whether all of each FACTOR x FACTOR block is set."""
-    return mask[::2, ::2] & mask[1::2, ::2] & mask[::2, 1::2] & mask[1::2, 1::2]
+@njit(cache=True)
+def sort_cells(seen_free, occupied, cleared_until, now, seen, uncleared, soft):
+    """Sorts this field's cells by those of the local map, ``FACTOR`` x ``FACTOR`` to one.
+
+    ``seen`` are those all of which were just seen free, ``uncleared`` (uint8) is 0 where nobody can be
+    by now, ``soft`` (uint8) 0 where something stands.
+    """
+    rows, columns = seen.shape
+    for row in range(rows):
+        for column in range(columns):
+            free, solid = True, False
+            for i in range(FACTOR * row, FACTOR * row + FACTOR):
+                for j in range(FACTOR * column, FACTOR * column + FACTOR):
+                    free &= seen_free[i, j]
+                    solid |= occupied[i, j]
+            seen[row, column] = free
+            uncleared[row, column] = not (free or cleared_until[row, column] > now)
+            soft[row, column] = not solid
 
 
-def block_any(mask: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """Whether any of each FACTOR x FACTOR block is set."""
-    return mask[::2, ::2] | mask[1::2, ::2] | mask[::2, 1::2] | mask[1::2, 1::2]
+@njit(cache=True)
+def find_bodies(near_cleared, near_solid, radius, nobody):
+    """Writes to ``nobody`` (uint8) 0 where the centre of a body of ``radius`` (cells) may be; if any.
+
+    It fits where nothing cleared and nothing solid is nearer, and hides where what is cleared is no
+    more than a cell further away than what is solid.
+    """
+    found = False
+    for row in range(nobody.shape[0]):
+        for column in range(nobody.shape[1]):
+            cleared, solid = near_cleared[row, column], near_solid[row, column]
+            body = cleared >= radius and solid >= radius and cleared <= solid + 1.0
+            nobody[row, column] = not body
+            found |= body
+    return found
+
+
+@njit(cache=True)
+def keep_clear(cleared_until, seen, distance, radius, now, speed):
+    """Notes until when (s) nobody can have come to the cells that were just seen."""
+    for row in range(seen.shape[0]):
+        for column in range(seen.shape[1]):
+            if seen[row, column]:
+                reach = max(distance[row, column] - radius, 0.0)
+                cleared_until[row, column] = now + reach / speed

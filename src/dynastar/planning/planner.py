@@ -123,9 +123,8 @@ class GridPlanner:
         patch = np.asarray(patch_blocked, dtype=bool)
         check_window(row0, col0, patch.shape, (self.grid.rows, self.grid.columns))
         bottom, right = row0 + patch.shape[0], col0 + patch.shape[1]
-        window = self._blocked[row0:bottom, col0:right]
-        self._search.count(row0, col0, patch.astype(np.int32) - window)
-        window[:] = patch
+        self._blocked[row0:bottom, col0:right] = patch
+        self._search.recount()
         if self._stale is not None:
             top, left, low, side = self._stale
             row0, col0 = min(row0, top), min(col0, left)

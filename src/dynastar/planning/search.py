@@ -36,8 +36,8 @@ class SearchGrid:
     """A grid prepared once and searched many times; nothing is cleared between searches.
 
     ``occupied`` is [rows, columns], true where nothing can be. A diagonal step needs both cells
-    beside it free. P of Eq. 2 counts the cells of ``counted`` (uint8, 1 where something is; looked at
-    when it is first wanted, then see ``count``), else those of ``occupied``. A cell of the map, in
+    beside it free. P of Eq. 2 counts the cells of ``counted`` (uint8, 1 where something is, see
+    ``recount``), else those of ``occupied``. A cell of the map, in
     which k and "around n" are measured, is ``cell`` cells of the grid wide. Raises MapError for an
     array that is not two-dimensional, empty or too large.
     """
@@ -95,17 +95,9 @@ class SearchGrid:
             self._sums = sums
         return self._sums
 
-    def count(self, row0: int, col0: int, change: npt.NDArray[np.int32]) -> None:
-        """Keeps P of Eq. 2 up: ``change`` (m, n) is 1 where the map has something new, -1 where it
-        has nothing any more, in the window at (row0, col0)."""
-        if self._sums is None or not change.any():
-            return
-        bottom, right = row0 + change.shape[0], col0 + change.shape[1]
-        more = change.cumsum(axis=0).cumsum(axis=1)
-        self._sums[row0 + 1 : bottom + 1, col0 + 1 : right + 1] += more
-        self._sums[row0 + 1 : bottom + 1, right + 1 :] += more[:, -1:]
-        self._sums[bottom + 1 :, col0 + 1 : right + 1] += more[-1]
-        self._sums[bottom + 1 :, right + 1 :] += more[-1, -1]
+    def recount(self) -> None:
+        """Says that ``counted`` has changed: P of Eq. 2 is summed up anew when it is next wanted."""
+        self._sums = None
 
     @property
     def lines(self) -> tuple[jump_kernel.Words, jump_kernel.Words]:
@@ -140,8 +132,12 @@ class SearchGrid:
             return
         blocked[within] = mask
         find_near(blocked, self._near[top + 1 : end + 1, left + 1 : side + 1])
-        if self._counted is None:
-            self.count(row0, col0, change)
+        if self._counted is None and self._sums is not None:
+            more = change.cumsum(axis=0).cumsum(axis=1)
+            self._sums[row0 + 1 : bottom + 1, col0 + 1 : right + 1] += more
+            self._sums[row0 + 1 : bottom + 1, right + 1 :] += more[:, -1:]
+            self._sums[bottom + 1 :, col0 + 1 : right + 1] += more[-1]
+            self._sums[bottom + 1 :, right + 1 :] += more[-1, -1]
         if self._lines is not None:
             self._pack(row0 + 1, col0 + 1, bottom + 1, right + 1)
         self._jumps = None

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from dynastar.config import Field
 from dynastar.geometry import Goal
 from dynastar.grid import OccupancyGrid, Unknown
+from dynastar.navigator import Preset
 from dynastar.robot import Robot
 from dynastar.simulation.faults import Fault
 
@@ -82,6 +83,6 @@ class Scenario:
     time_limit: float = 300.0
     unknown: Unknown = "blocked"
     seed: int = 0
-    preset: Literal["default", "paper"] = "default"
+    preset: Preset = "default"
     navigator: Mapping[str, Any] = field(default_factory=dict)
     source: Mapping[str, Any] = field(default_factory=dict)
