@@ -46,8 +46,6 @@ def test_each_arm_differs_from_the_default_as_it_says():
         "no risk": {"dwa.weights.risk"},
         "bearing in place of cost-to-go": {"dwa.progress"},
         "constant arcs, no tails": {"dwa.search"},
-        "constant arcs, bearing": {"dwa.search", "dwa.progress"},
-        "nothing tracked": {"track"},
         "no hysteresis": {"dwa.hysteresis"},
         "window of one period": {"dwa.reach"},
         "3 x 6 samples": {"dwa.v_samples", "dwa.omega_samples"},

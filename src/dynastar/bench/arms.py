@@ -62,8 +62,6 @@ ARMS: dict[str, Arm] = {
     "no risk": _weights(risk=0.0),
     "bearing in place of cost-to-go": _window(progress="bearing"),
     "constant arcs, no tails": _window(search="arcs"),
-    "constant arcs, bearing": _window(search="arcs", progress="bearing"),
-    "nothing tracked": _navigator(track=False),
     "no hysteresis": _window(hysteresis=0.0),
     "window of one period": _window(reach=0.0),
     "3 x 6 samples": _window(v_samples=3, omega_samples=6),

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from matplotlib.figure import Figure
 
-from dynastar.bench import ablation, table1, table1_tables, table3, targets, terms
+from dynastar.bench import ablation, presets, table1, table1_tables, table3, targets, terms
 from dynastar.bench.families import KINDS
 from dynastar.bench.figures import SUFFIXES, draw_all
 from dynastar.bench.tables import Table, as_markdown
@@ -161,6 +161,15 @@ def _columns(found: Mapping[str, Mapping[str, Any]]) -> list[Column]:
     ]
 
 
+def report_presets(asked: Asked) -> Report:
+    """The settings in which the presets differ."""
+    del asked
+    table = presets.table()
+    names = "setting", *presets.ORDER, "what"
+    found = [dict(zip(names, row, strict=True)) for row in table.rows]
+    return Report("presets", {"presets": found}, [table])
+
+
 def report_figures(asked: Asked) -> Report:
     """The figures, drawn into the folder."""
     asked.folder.mkdir(parents=True, exist_ok=True)
@@ -180,6 +189,7 @@ def report_targets(found: Mapping[str, Any]) -> Report:
 
 
 REPORTS: dict[str, Callable[[Asked], Report]] = {
+    "presets": report_presets,
     "table1": report_table1,
     "table3": report_table3,
     "figures": report_figures,

@@ -22,7 +22,7 @@ def spread_of(values: Sequence[float]) -> dict[str, float]:
 
 
 class Table(NamedTuple):
-    """Columns are (heading, format of a number); the first column's cells are words, None is blank.
+    """Columns are (heading, format of a number, or "<" for words); None is blank. The first has words.
 
     ``notes`` say under the table what its words mean and where it comes from.
     """
@@ -50,9 +50,10 @@ def as_text(table: Table) -> str:
     """The table in columns, for a terminal."""
     cells = table.cells
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    left = _left_aligned(table)
     lines = [
         "  ".join(
-            cell.ljust(width) if at == 0 else cell.rjust(width)
+            cell.ljust(width) if at in left else cell.rjust(width)
             for at, (cell, width) in enumerate(zip(row, widths, strict=True))
         ).rstrip()
         for row in cells
@@ -64,11 +65,16 @@ def as_text(table: Table) -> str:
 def as_markdown(table: Table) -> str:
     """The table for the docs."""
     first, *rows = table.cells
-    aligned = [":--", *("--:" for _ in first[1:])]
+    left = _left_aligned(table)
+    aligned = [":--" if at in left else "--:" for at in range(len(first))]
     lines = [f"| {' | '.join(row)} |" for row in (first, aligned, *rows)]
     parts = [f"**{table.title}**", "\n".join(lines), table.notes]
     # A star is one here, and not the begin of something bold.
     return "\n\n".join(part.replace("A*", "A\\*") for part in parts if part)
+
+
+def _left_aligned(table: Table) -> set[int]:
+    return {at for at, (_, format_) in enumerate(table.columns) if at == 0 or format_ == "<"}
 
 
 def fill(document: str, name: str, text: str, where: Path) -> str:

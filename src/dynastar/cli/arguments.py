@@ -65,11 +65,14 @@ examples:
   dynastar paper table3 --maps 100 --out out/hundred --json-out -
   dynastar paper all --json-out paper.json
 
+  presets   the settings in which the presets printed, paper and default differ
   table1    traditional against improved A*, on the own map, over maps of 40 x 40 cells (random, rooms,
             maze, office; corner to corner), and over a tenth as many of 512 x 512; 2 minutes
   table3    the improved A* alone against the hybrid, in the own world and over worlds of 20 x 20 cells
-            with unknown blocks and a mover; 25 minutes for 1000
-  ablation  each term of Eqs. 2 and 9 left out or read otherwise, and each part of the whole; an hour
+            with unknown blocks and a mover, by the presets default and paper, and a tenth of them as
+            printed; 50 minutes for 1000
+  ablation  each term of Eqs. 2 and 9 left out or read otherwise, and each part of the whole, on worlds
+            of the suites paper and people; 2 hours for 100 of each
   figures   Figs. 1 to 8; 10 seconds
 
 Times are for two cores. Writes tables (.md), a line for each map or world (.csv) and pictures (.png,
@@ -314,7 +317,7 @@ def _add_paper(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
     paper.add_argument(
         "what",
         nargs="?",
-        choices=("table1", "table3", "ablation", "figures", "all"),
+        choices=("presets", "table1", "table3", "ablation", "figures", "all"),
         default="all",
         help="default all",
     )
@@ -328,9 +331,9 @@ def _add_paper(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
     paper.add_argument(
         "--worlds",
         type=count,
-        default=60,
+        default=100,
         metavar="N",
-        help="worlds of the ablation, no more than --maps (default 60)",
+        help="worlds of each suite in the ablation, no more than --maps (default 100)",
     )
     paper.add_argument("--seed", type=seed, default=0, metavar="N")
     paper.add_argument("--out", type=path, metavar="DIR", help="default out/paper")
