@@ -97,13 +97,29 @@ def report_table3(asked: Asked) -> Report:
     }
     rows = by_preset["default"]
     own = table3.own_row(settings=settings)
-    arrived = [row for row in rows if row["outcome"] == "arrived"]
+    arrived = {
+        preset: [row for row in of if row["outcome"] == "arrived"]
+        for preset, of in by_preset.items()
+    }
+    names = {
+        preset: f"{preset}: {len(arrived[preset])} of {len(of)} arrived"
+        for preset, of in by_preset.items()
+    }
     alone, hybrid = table3.PRINTED["improved"], table3.PRINTED["hybrid"]
     measures = {
-        "length ratio": (table3.length_ratio, hybrid[0] / alone[0]),
-        "turning points ratio": (table3.turning_ratio, hybrid[1] / alone[1]),
+        "length driven / improved A*'s grid path": (table3.length_ratio, hybrid[0] / alone[0]),
+        "turning points driven / grid path's": (table3.turning_ratio, hybrid[1] / alone[1]),
     }
-    label_of = f"{len(arrived)} worlds"
+    spreads = [
+        Spread(
+            label,
+            {name: [ratio(row) for row in arrived[preset]] for preset, name in names.items()},
+            printed,
+            log=True,
+            reference=1.0,
+        )
+        for label, (ratio, printed) in measures.items()
+    ]
     return Report(
         "table3",
         {
@@ -113,14 +129,7 @@ def report_table3(asked: Asked) -> Report:
         },
         table3.tables(by_preset, own),
         {f"table3-{name}": of for name, of in by_preset.items()},
-        draw_spreads(
-            [
-                Spread(label, {label_of: [ratio(row) for row in arrived]}, printed, reference=1.0)
-                for label, (ratio, printed) in measures.items()
-            ]
-        )
-        if arrived
-        else None,
+        draw_spreads(spreads) if any(arrived.values()) else None,
     )
 
 

@@ -175,7 +175,7 @@ def show_driven(axes: Axes, episode: Episode) -> tuple[LineCollection, list[Arti
         show_robot(axes, episode, driven.poses[tick])
     entries: list[Artist] = [
         Line2D([], [], color=palette.speed_colours()(0.7), linewidth=2.4, label="driven"),
-        _ring("none", palette.FAINT_INK, f"robot every {step:g} s"),
+        _footprint(scene.outline(episode, np.zeros(3)), f"robot every {step:g} s"),
     ]
     return line, entries
 
@@ -241,6 +241,13 @@ def mark(
 
 def _patch(colour: str, label: str) -> Patch:
     return Patch(facecolor=colour, edgecolor=palette.FAINT_INK, linewidth=0.4, label=label)
+
+
+def _footprint(outline: Floats, label: str) -> Line2D:
+    """A legend's entry in the shape of a footprint: ``outline`` (k, 2) headed along x."""
+    shape = Line2D([], [], linestyle="none", marker=outline.tolist(), markersize=9, label=label)
+    shape.set(markerfacecolor="none", markeredgecolor=palette.FAINT_INK, markeredgewidth=0.9)
+    return shape
 
 
 def _ring(face: str, edge: str, label: str) -> Line2D:

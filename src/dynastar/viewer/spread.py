@@ -93,6 +93,8 @@ def show_spread(axes: Axes, spread: Spread, groups: Sequence[str]) -> None:
             worst = values.max() if spread.high_is_worst else values.min()
             axes.plot(worst, row, markersize=4, zorder=4, **WORST)
             _figure_beside(axes, row, format(median, spread.format))
+        else:
+            _figure_beside(axes, row, "–")
         printed = spread.printed
         at = printed.get(group) if isinstance(printed, Mapping) else printed
         if at is not None:
@@ -155,9 +157,9 @@ def _finish(axes: Axes, label: str, log: bool, rows: int) -> None:
     if log:
         axes.set_xscale("log")
         low, high = axes.get_xlim()
-        axes.xaxis.set_major_locator(
-            LogLocator(subs=(1.0, 2.0, 5.0) if high < 60.0 * low else (1.0,))
-        )
+        subs = (1.0, 2.0, 5.0) if high < 60.0 * low else (1.0,)
+        narrow = MaxNLocator(4, steps=[1, 2, 2.5, 5, 10])
+        axes.xaxis.set_major_locator(narrow if high < 4.0 * low else LogLocator(subs=subs))
         axes.xaxis.set_minor_locator(NullLocator())
         axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     else:
