@@ -1,16 +1,17 @@
 """Drives through the office in one's own loop: the same loop drives a real robot."""
 
-from dynastar import Goal, Navigator, NavigatorConfig, Pose2D, RobotState, load_scenario
-from dynastar.simulation import World
+from dynastar import Navigator, NavigatorConfig, Pose2D, RobotState, Twist, World, load_scenario
 
 scenario = load_scenario("examples/office/office.toml")
 world = World(scenario, Pose2D(2.0, 2.0, 0.0))
 config = NavigatorConfig(latency=0.1, range_error=0.03)
 navigator = Navigator(scenario.grid, scenario.robot, config)
-navigator.set_goal(Goal(7.2, 10.0))
+navigator.set_goal((7.2, 10.0))
 
-while world.time < 100.0 and navigator.status.state not in ("arrived", "blocked"):
+while world.time < 100.0:
     state = RobotState(world.time, world.pose, world.twist)
     world.step(navigator.command(state, world.scan()), 0.1)
-    assert not world.contact
+    if navigator.status.state in ("arrived", "blocked") and world.resting:
+        break
+world.step(Twist(0.0, 0.0), 0.1)
 print(f"{world.time:.1f} s: {navigator.status.state}, {navigator.status.reason}")

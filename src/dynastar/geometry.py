@@ -1,7 +1,11 @@
 """Poses and twists in the plane (REP 103: metres, radians, x ahead, counter-clockwise positive)."""
 
 import math
-from typing import NamedTuple
+from collections.abc import Iterable
+from numbers import Real
+from typing import Any, NamedTuple
+
+from dynastar.errors import InputError
 
 
 class Pose2D(NamedTuple):
@@ -25,6 +29,52 @@ class Goal(NamedTuple):
     x: float
     y: float
     heading: float | None = None
+
+
+def as_point(value: Any, what: str) -> tuple[float, float]:
+    """(x, y) in metres of a point, a pose or a goal; InputError, which calls it ``what``, for another."""
+    numbers = _numbers(value)
+    if numbers is None or not 2 <= len(numbers) <= 3:
+        raise InputError(f"{what} is {value!r:.80}: expected (x, y), two numbers in metres")
+    return numbers[0], numbers[1]
+
+
+def as_goal(value: Any) -> Goal:
+    """A goal from a Goal, a pose or a tuple (x, y) or (x, y, heading); InputError for anything else."""
+    numbers = _numbers(value)
+    if numbers is None or not 2 <= len(numbers) <= 3:
+        raise InputError(
+            f"a goal is {value!r:.80}: expected (x, y) in metres, or (x, y, heading) in radians"
+        )
+    x, y = numbers[:2]
+    heading = numbers[2] if len(numbers) == 3 else None
+    if not all(map(math.isfinite, numbers)):
+        raise InputError(f"a goal is ({x}, {y}, {heading}): expected finite numbers")
+    if heading is not None and abs(heading) > math.tau:
+        raise InputError(
+            f"a goal's heading is {heading:g} rad: expected -6.28 to 6.28 "
+            f"({heading:g} degrees are {wrap_angle(math.radians(heading)):.4g} rad)"
+        )
+    return Goal(x, y, heading)
+
+
+def as_goals(value: Any) -> list[Goal]:
+    """The goals of one (see ``as_goal``) or of a sequence of them; InputError for anything else."""
+    parts = list(value) if isinstance(value, Iterable) and not isinstance(value, str) else [0.0]
+    one = isinstance(value, Goal) or not all(hasattr(part, "__len__") for part in parts)
+    return [as_goal(value)] if one else [as_goal(part) for part in parts]
+
+
+def _numbers(value: Any) -> list[float] | None:
+    """The numbers of a tuple, a list or an array, None left out at the end; None if it is none such."""
+    if isinstance(value, str | bytes) or not isinstance(value, Iterable):
+        return None
+    found = list(value)
+    if len(found) == 3 and found[2] is None:
+        found.pop()
+    if not all(isinstance(v, Real) and not isinstance(v, bool) for v in found):
+        return None
+    return [float(v) for v in found]
 
 
 def wrap_angle(angle: float) -> float:

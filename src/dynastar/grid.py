@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from numbers import Real
 from typing import Literal, NamedTuple, TypeVar, get_args
 
 import numpy as np
@@ -65,6 +66,7 @@ class OccupancyGrid:
     -1 is unknown, 0 free, 100 occupied; from 65 on counts as occupied, up to 19 as free, between
     as unknown. ``keepout`` (bool) marks cells the robot may not enter though nothing stands there;
     ``speed_limit`` (float32, m/s, inf for none) caps the speed; both are [rows, columns] or None.
+    A number as ``frame`` is the side of a cell in metres.
     """
 
     values: npt.NDArray[np.int8]
@@ -80,6 +82,13 @@ class OccupancyGrid:
             values = np.where(values, OCCUPIED, FREE)
         if not np.issubdtype(values.dtype, np.integer) or values.min() < -1 or values.max() > 100:
             raise MapError("a grid's values have to be integers from -1 to 100, or booleans")
+        if isinstance(self.frame, Real) and not isinstance(self.frame, bool):
+            object.__setattr__(self, "frame", GridFrame(float(self.frame)))
+        if not isinstance(self.frame, GridFrame):
+            raise MapError(
+                f"a grid's frame is {self.frame!r:.80}: expected a GridFrame, or the side of a "
+                "cell in metres"
+            )
         if not (self.frame.resolution > 0 and all(map(math.isfinite, self.frame))):
             raise MapError(f"a grid's frame is {self.frame}: expected a resolution > 0, all finite")
         object.__setattr__(self, "values", _readonly(values, np.int8))

@@ -9,11 +9,12 @@ from typing import Annotated, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.config import Field
+from dynastar.config import Field, self_checking
 from dynastar.errors import ConfigError
 from dynastar.geometry import Pose2D, Twist, wrap_angle
 
 
+@self_checking
 class Limits(NamedTuple):
     """What the drive can do; ``v_min`` is negative for a robot that may reverse."""
 
@@ -26,6 +27,7 @@ class Limits(NamedTuple):
     v_min: Annotated[float, Field("smallest speed, negative to reverse", "m/s", -20.0, 0.0)] = 0.0
 
 
+@self_checking
 class Lidar(NamedTuple):
     """A planar lidar as mounted on the robot."""
 

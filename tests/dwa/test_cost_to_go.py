@@ -91,7 +91,9 @@ def test_a_mover_costs_where_and_when_it_is_met():
     people = predict([MovingObstacle(3.05, 0.5, 0.0, 0.5, 0.3)], PredictionConfig(), 0.0, 0.1, 40)
     cost = np.ones((40, 60))
     c.add_moving(cost, FRAME, people, (0.0, 0.1), (0.05, 2.0), 0.3, 1.0)
-    assert cost[20, 30] > 1.0 + 0.5 * 0.7 * c.MEETING_COST
+    discount = math.exp(-3.0 / people.memory)
+    assert cost[20, 30] > 1.0 + 0.5 * 0.7 * discount * c.MEETING_COST
+    assert cost[20, 30] < 1.0 + 1.1 * discount * c.MEETING_COST
     assert cost[20, 10] == 1.0  # before it comes
     assert cost.max() <= 1.0 + c.MEETING_COST + 1e-9
     nobody = np.ones((40, 60))
@@ -122,5 +124,6 @@ def test_every_cell_costs_what_meeting_everybody_there_on_arrival_does(seed):
             gaps = np.hypot(*(people.mean[:, :, k] - cell).T).T - 0.3 - people.now[:, 4:5]
             sure = 1.0 / (1.0 + np.exp(1.702 * gaps / people.spread[k]))
             sure[gaps >= 2.0 * people.spread[k]] = 0.0
-            expected += c.MEETING_COST * (sure * people.weights).sum()
+            discount = math.exp(-times[k] / people.memory)
+            expected += discount * c.MEETING_COST * (sure * people.weights).sum()
         assert cost[row, column] == pytest.approx(expected)

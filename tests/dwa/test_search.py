@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 
 from dynastar.dwa import DynamicWindow
 from dynastar.dwa.config import DwaConfig, Weights
-from dynastar.dwa.objective import least_risk, note_risk, risk
+from dynastar.dwa.objective import note_risk, risk
 from dynastar.dwa.scene import AT_REST, FOLLOW, Manoeuvre
-from dynastar.dwa.search import contingent, raise_scores
 from dynastar.geometry import Pose2D, Twist
 from dynastar.perception import MovingObstacle
 from dynastar.robot import ROBOTS, Footprint, Limits, Robot, arc, slew
@@ -192,42 +191,3 @@ def test_the_choice_is_the_admissible_sample_with_the_highest_score(name, v, ome
     assert choice.command.omega == pytest.approx(
         slew(twist.omega, wanted.omega, limits.omega_accel, limits.omega_brake, PERIOD)
     )
-
-
-@given(st.integers(0, 10**6))
-@settings(max_examples=100, deadline=None)
-def test_a_sample_is_scored_as_if_its_tail_were_chosen_once_it_is_seen_what_they_do(seed):
-    """S0 + sum w (S - S0), each S the best of the tails if one moving obstacle does one thing."""
-    random = np.random.default_rng(seed)
-    tails, count, hypotheses, rho = 4, int(random.integers(1, 5)), 3, 20.0
-    weights = np.array([0.7, 0.2, 0.1])
-    base, worst = random.uniform(0, 1, tails), random.uniform(0, 0.2, (tails, count, hypotheses))
-
-    def best(done):
-        risks = [sum(worst[k, m, done.get(m, 0)] for m in range(count)) for k in range(tails)]
-        return max(base - rho * np.array(risks))
-
-    expected = best({}) + sum(
-        weights[h] * (best({m: h}) - best({})) for m in range(count) for h in range(1, hypotheses)
-    )
-    scores = np.full((count, hypotheses), -np.inf)
-    for k in range(tails):
-        least = raise_scores(scores, base[k], worst[k], rho)
-    assert contingent(scores, weights) == pytest.approx(expected)
-    assert least == scores.min()
-    for k in range(tails):  # what a tail is dropped by is no more than any of its scores
-        one = np.full((count, hypotheses), -np.inf)
-        raise_scores(one, base[k], worst[k], rho)
-        assert base[k] - rho * least_risk(worst[k]) >= one.max() - 1e-9
-
-
-def test_who_can_still_stop_dares_what_a_robot_committed_to_its_manoeuvre_would_not():
-    """With one tail only the score is the mixture over the hypotheses."""
-    worst = np.array([[0.0, 0.3, 0.0]])
-    weights = np.array([0.7, 0.2, 0.1])
-    scores = np.full((1, 3), -np.inf)
-    raise_scores(scores, 1.0, worst, 20.0)
-    committed = contingent(scores, weights)
-    assert committed == pytest.approx(1.0 - 20.0 * 0.2 * 0.3)
-    raise_scores(scores, 0.5, np.zeros((1, 3)), 20.0)  # to stop, should they stop
-    assert contingent(scores, weights) == pytest.approx(1.0 + 0.2 * (0.5 - 1.0))

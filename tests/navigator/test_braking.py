@@ -31,6 +31,7 @@ limits_ = st.builds(
     omega_accel=st.floats(0.2, 5.0),
     v_brake=st.floats(0.2, 3.0),
     omega_brake=st.floats(0.2, 5.0),
+    v_min=st.just(0.0),
 )
 
 

@@ -203,8 +203,9 @@ def test_no_corner_near_a_triangle_is_overlooked(seed, radius):
     """A string's bend is sought among rows and columns that hold the triangle and all near to it."""
     rng = np.random.default_rng(seed)
     a, b, c = corners = rng.integers(0, 41, (3, 2)) / rng.choice([1.0, 2.0, 3.0])
-    side = float(np.sign((b - a)[1] * (c - a)[0] - (b - a)[0] * (c - a)[1]))
-    assume(side != 0.0)
+    twice_area = (b - a)[1] * (c - a)[0] - (b - a)[0] * (c - a)[1]
+    assume(abs(twice_area) > 1e-9)
+    side = float(np.sign(twice_area))
     shares = rng.dirichlet(np.ones(3) * rng.choice([0.1, 1.0]), 200)
     turn = rng.uniform(0.0, 2.0 * np.pi, 200)
     ring = rng.choice([0.0, radius], (200, 1)) * np.column_stack([np.sin(turn), np.cos(turn)])

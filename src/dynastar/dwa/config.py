@@ -3,9 +3,10 @@
 import math
 from typing import Annotated, Literal, NamedTuple
 
-from dynastar.config import Field
+from dynastar.config import Field, self_checking
 
 
+@self_checking
 class Weights(NamedTuple):
     """alpha, beta, gamma, sigma and rho of Eq. 9."""
 
@@ -16,6 +17,7 @@ class Weights(NamedTuple):
     risk: Annotated[float, Field("rho: keeps away from moving obstacles", "", 0.0, 100.0)] = 20.0
 
 
+@self_checking
 class ArcsConfig(NamedTuple):
     """The classic window, whose samples are held on constant arcs (``dwa.search = "arcs"``)."""
 
@@ -39,6 +41,7 @@ class ArcsConfig(NamedTuple):
     )
 
 
+@self_checking
 class DwaConfig(NamedTuple):
     """Settings of one dynamic window."""
 

@@ -42,8 +42,9 @@ def add_moving(cost, frame, people, timing, robot, radius, speed):
     """Adds what moving obstacles cost where the robot would meet them.
 
     A cell costs ``MEETING_COST`` times the probability of a contact at the time when a robot that
-    drives straight there at ``speed`` arrives. ``frame`` is (resolution, x0, y0), ``robot`` (x, y),
-    ``radius`` its own (m), ``timing`` (begin, step) of the predictions in seconds.
+    drives straight there at ``speed`` arrives, discounted with that time as risk is. ``frame`` is
+    (resolution, x0, y0), ``robot`` (x, y), ``radius`` its own (m), ``timing`` (begin, step) of the
+    predictions in seconds.
     """
     resolution, x0, y0 = frame
     begin, step = timing
@@ -87,6 +88,7 @@ def add_moving(cost, frame, people, timing, robot, radius, speed):
                     square = dx * dx + dy * dy
                     if square < reach * reach:
                         p = contact_probability(math.sqrt(square) - near, spread)
+                        p *= math.exp(-(begin + (k + 1) * step) / people.memory)
                         cost[row, column] += MEETING_COST * people.weights[h] * p
 
 

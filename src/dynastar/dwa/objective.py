@@ -92,13 +92,3 @@ def risk(people, worst):
         for h in range(worst.shape[1]):
             total += people.weights[h] * worst[m, h]
     return total
-
-
-@njit(cache=True)
-def least_risk(worst):
-    """What is left of the risk whatever one of the moving obstacles does, if the others go on."""
-    total = most = 0.0
-    for m in range(worst.shape[0]):
-        total += worst[m, 0]
-        most = max(most, worst[m, 0])
-    return total - most

@@ -14,7 +14,6 @@ from dynastar.dwa.motion import driven
 from dynastar.dwa.objective import (
     dist,
     heading,
-    least_risk,
     note_risk,
     objective,
     progress,
@@ -206,11 +205,11 @@ def future(scene, rules, state, manoeuvre, gauge, terms, worst):
             left = LOOKS - looks
             at_best = gained + left * (begin - here) + 0.5 * left * (left + 1) * most
             terms[HEADING] = headed if rules.by_bearing else progress(at_best, LOOKS * scale)
-            terms[RISK] = least_risk(worst)
+            terms[RISK] = risk(people, worst)
             if objective(weights, terms) < enough:
                 return DROPPED
         elif among_people and k % 8 == 0:
-            terms[RISK] = least_risk(worst)
+            terms[RISK] = risk(people, worst)
             if objective(weights, terms) < enough:
                 return DROPPED
     terms[HEADING] = headed if rules.by_bearing else progress(gained, LOOKS * scale)

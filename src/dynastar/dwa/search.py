@@ -11,7 +11,6 @@ from dynastar.dwa.admissible import ADMISSIBLE, MOVER, certified_stop, rests_in_
 from dynastar.dwa.motion import slew
 from dynastar.dwa.objective import objective
 from dynastar.dwa.rollout import (
-    DROPPED,
     LOOKS,
     SCORED,
     TOUCHED,
@@ -48,33 +47,6 @@ def refusal(scene, rules, state, command):
 
 
 @njit(cache=True)
-def contingent(scores, weights):
-    """The score of a sample whose tail is chosen once it is seen what moving obstacles do.
-
-    ``scores`` (m, hypotheses) are the best over the tails if one moving obstacle does one thing and
-    the others go on; [:, 0], that all go on, is one and the same. S0 + sum_{m,h>0} w_h (S_mh - S0).
-    """
-    on = scores[0, 0]
-    total = on
-    for m in range(scores.shape[0]):
-        for h in range(1, scores.shape[1]):
-            total += weights[h] * (scores[m, h] - on)
-    return total
-
-
-@njit(cache=True)
-def raise_scores(scores, base, worst, rho):
-    """Raises ``scores`` to those of one more tail; ``base`` is its score without risk."""
-    on = base - rho * worst[:, 0].sum()
-    least = np.inf
-    for m in range(scores.shape[0]):
-        for h in range(scores.shape[1]):
-            scores[m, h] = max(scores[m, h], on + rho * (worst[m, 0] - worst[m, h]))
-            least = min(least, scores[m, h])
-    return least
-
-
-@njit(cache=True)
 def search(scene, rules, state, n, buffers):
     """Scores the admissible of ``n`` samples by Eq. 9 and returns the best, or -1.
 
@@ -87,11 +59,9 @@ def search(scene, rules, state, n, buffers):
     (n + 2,), terms (n + 2, 5), refusals and scores (n + 2,).
     """
     limits, span, period = rules.limits, rules.span, rules.period
-    weights = weights_of(rules, scene)
     samples, commands, holds, tails, terms, refused, score = buffers
     pose, v, omega = state
     worst = np.zeros((len(scene.people.now), scene.people.mean.shape[1]))
-    scores = np.empty(worst.shape)
     found = np.zeros(5)
     begin = pose_value(scene.cost_to_go, limits, pose, v)
     between = span.step * (span.horizon_steps // LOOKS)
@@ -120,8 +90,6 @@ def search(scene, rules, state, n, buffers):
         if refused[i] != ADMISSIBLE and refused[i] != MOVER:
             continue
         has_to_pass = refused[i] == MOVER
-        scores[:] = -np.inf
-        least = -np.inf  # of ``scores``; a tail that stays below adds nothing
         change = 0.0 if i == n else span.hysteresis
         for kind in range(6):
             tail, long = kind % 3, kind >= 3
@@ -137,24 +105,17 @@ def search(scene, rules, state, n, buffers):
             elif not worth_holding(sample, limits, tail, long, people):
                 continue
             manoeuvre = (sample[0], sample[1], held, tail, has_to_pass)
-            enough = least if people and least > -np.inf else max(best_score, score[i])
-            gauge = (begin, scale, enough + change)
+            gauge = (begin, scale, max(best_score, score[i]) + change)
             outcome = future(scene, rules, state, manoeuvre, gauge, found, worst)
             if outcome != TOUCHED:
                 refused[i] = ADMISSIBLE
-            if people and outcome == DROPPED and kind == 0:
-                break  # no other tail gets further
             if outcome == SCORED:
-                total = objective(weights, found) - change
+                total = objective(weights_of(rules, scene), found) - change
                 if total > score[i]:
                     score[i] = total
                     terms[i] = found
                     holds[i] = scene.last.hold if i == n else held * span.step
                     tails[i] = tail
-                if people:
-                    least = raise_scores(scores, total + weights[4] * found[4], worst, weights[4])
-        if least > -np.inf:
-            score[i] = contingent(scores, scene.people.weights)
         if score[i] > best_score:
             best, best_score = i, score[i]
     return best

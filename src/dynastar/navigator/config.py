@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, NamedTuple
 
-from dynastar.config import Field, checked, choose
+from dynastar.config import Field, checked, choose, self_checking
 from dynastar.dwa.config import ArcsConfig, DwaConfig, Weights
 from dynastar.perception import LocalMapConfig, PredictionConfig, TrackerConfig
 from dynastar.planning import PlannerConfig
@@ -11,6 +11,7 @@ from dynastar.planning import PlannerConfig
 CELLS = 4  # of the maps, at least, to a robot's inscribed radius
 
 
+@self_checking
 class NavigatorConfig(NamedTuple):
     """Everything a navigator can be told; the declared bounds are what its promise rests on."""
 

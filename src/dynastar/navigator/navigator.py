@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.config import choose
 from dynastar.dwa.clearance import kept_margin
 from dynastar.dwa.dwa import Choice, DynamicWindow
 from dynastar.dwa.scene import AT_REST, DistanceField, Scene
 from dynastar.errors import InputError
-from dynastar.geometry import Goal, Pose2D, Twist, wrap_angle
+from dynastar.geometry import Goal, Pose2D, Twist, as_goals, wrap_angle
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator.braking import Commands
 from dynastar.navigator.config import NavigatorConfig, fitted
@@ -26,7 +27,7 @@ from dynastar.path import Path
 from dynastar.perception import MovingObstacle
 from dynastar.perception.prediction import predict
 from dynastar.planning import Planner
-from dynastar.robot import Robot, slew
+from dynastar.robot import ROBOTS, Robot, slew
 from dynastar.scan import LaserScan
 
 GENTLE = 0.7  # of the braking that slowing down for a speed limit or a heading uses
@@ -39,16 +40,28 @@ class Navigator:
     """Takes a robot to its goals: give it every state and scan, and drive as it says.
 
     Single-threaded, without a clock of its own; ``command`` never raises while driving: trouble is
-    a braking twist and a ``status``. A ``planner`` takes the place of dynastar's own.
+    a braking twist and a ``status``. A ``planner`` takes the place of dynastar's own, ``robot`` may be
+    a name in ``ROBOTS``. Raises InputError for a map, robot or settings that are none.
     """
 
     def __init__(
         self,
         grid: OccupancyGrid,
-        robot: Robot,
+        robot: Robot | str,
         config: NavigatorConfig = NavigatorConfig(),
         planner: Planner | None = None,
     ) -> None:
+        robot = choose(robot, ROBOTS, "robot") if isinstance(robot, str) else robot
+        for what, value, kind in (
+            ("a map", grid, OccupancyGrid),
+            ("a robot", robot, Robot),
+            ("a navigator's settings", config, NavigatorConfig),
+        ):
+            if not isinstance(value, kind):
+                raise InputError(
+                    f"{what}: got {type(value).__name__}, expected {kind.__name__}"
+                    + ("" if kind is not Robot else f", or one of {', '.join(ROBOTS)}")
+                )
         if not config.reverse:
             robot = replace(robot, limits=robot.limits._replace(v_min=max(robot.limits.v_min, 0.0)))
         config = fitted(config, robot.footprint.inscribed)
@@ -109,12 +122,12 @@ class Navigator:
         self.sensing.set_grid(grid)
         return PlanningMap(grid, self.config, radii, self._planner)
 
-    def set_goal(self, goal: Goal | Sequence[Goal]) -> None:
-        """One goal, or several to reach in order: (x, y) metres and a heading in radians or None."""
-        goals = [goal] if isinstance(goal, Goal) else [Goal(*g) for g in goal]
-        for x, y, heading in goals:
-            if not all(map(math.isfinite, (x, y, heading or 0.0))):
-                raise InputError(f"a goal is ({x}, {y}, {heading}): expected finite numbers")
+    def set_goal(self, goal: Goal | Sequence[float] | Sequence[Goal | Sequence[float]]) -> None:
+        """One goal, or several to reach in order: (x, y) metres and a heading in radians or None.
+
+        Tuples do as well as Goals. Raises InputError for what is no goal.
+        """
+        goals = as_goals(goal)
         self._set_out(goals, "new goal" if goals else "no goal")
 
     def follow(self, path: Path | npt.ArrayLike, heading: float | None = None) -> None:

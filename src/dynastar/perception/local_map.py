@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.clearance import lower_bounds
-from dynastar.config import Field
+from dynastar.config import Field, self_checking
 from dynastar.geometry import Pose2D
 from dynastar.grid import OccupancyGrid
 from dynastar.perception import local_map_kernels as kernels
@@ -17,6 +17,7 @@ UNSEEN, SEEN_FREE, SEEN_OCCUPIED = 0, 1, 2
 Points = npt.NDArray[np.float64]
 
 
+@self_checking
 class LocalMapConfig(NamedTuple):
     """The local map's settings."""
 

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.compiled import njit
-from dynastar.config import Field
+from dynastar.config import Field, self_checking
 from dynastar.perception.tracking import MovingObstacle
 
 Floats = npt.NDArray[np.float64]
@@ -20,6 +20,7 @@ SPEEDS = np.array([1.0, 0.0, -1.0])  # of a track's velocity, by hypothesis
 WEIGHTS = np.array([0.7, 0.2, 0.1])
 
 
+@self_checking
 class PredictionConfig(NamedTuple):
     """How moving obstacles are predicted."""
 

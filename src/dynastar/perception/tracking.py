@@ -6,7 +6,7 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.config import Field
+from dynastar.config import Field, self_checking
 from dynastar.geometry import Pose2D
 from dynastar.grid import GridFrame
 from dynastar.perception import detection
@@ -20,6 +20,7 @@ TrackState = Literal["tentative", "confirmed", "stopped", "occluded"]
 NOTHING_KNOWN = Known(np.zeros((1, 1), np.bool_), GridFrame(1.0))
 
 
+@self_checking
 class TrackerConfig(NamedTuple):
     """Settings of detection and tracking."""
 

@@ -4,11 +4,12 @@ import math
 from collections.abc import Callable
 from typing import Annotated, Literal, NamedTuple
 
-from dynastar.config import Field
+from dynastar.config import Field, self_checking
 from dynastar.planning.heap_kernel import Terms
 from dynastar.planning.labels import STRAIGHT
 
 
+@self_checking
 class HeuristicConfig(NamedTuple):
     """The terms of h_A(n) = e^(P/Q) (h(n) + h(p) - k cos(beta)), each with its readings.
 

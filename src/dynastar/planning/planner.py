@@ -10,8 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.clearance import inflate
-from dynastar.config import Field, choose
-from dynastar.errors import ConfigError, GoalOccupied, NoPath, OutOfMap, StartOccupied
+from dynastar.config import Field, choose, self_checking
+from dynastar.errors import ConfigError, GoalOccupied, InputError, NoPath, OutOfMap, StartOccupied
+from dynastar.geometry import as_point
 from dynastar.grid import OccupancyGrid, Unknown
 from dynastar.path import Path
 from dynastar.planning.any_angle import straighten
@@ -32,6 +33,7 @@ Mask = npt.NDArray[np.bool_]
 Point = tuple[float, float]
 
 
+@self_checking
 class PlannerConfig(NamedTuple):
     """How a path is found and what is made of it."""
 
@@ -87,6 +89,11 @@ class GridPlanner:
         config: PlannerConfig = PlannerConfig(),
         cell: int = 1,
     ) -> None:
+        if not isinstance(grid, OccupancyGrid):
+            raise InputError(
+                f"a map is of type {type(grid).__name__}: expected an OccupancyGrid, as "
+                "OccupancyGrid(array, 0.05) makes of an array with cells of 5 cm"
+            )
         if not (math.isfinite(radius) and radius >= 0.0):
             raise ConfigError(f"a planning radius is {radius}: expected 0 m or more")
         choose(config.planner, ALGORITHMS, "planner")
@@ -159,6 +166,7 @@ class GridPlanner:
         StartOccupied, GoalOccupied or NoPath.
         """
         planner = planner or self.config.planner
+        start_xy, goal_xy = as_point(start_xy, "the start"), as_point(goal_xy, "the goal")
         began = time.perf_counter()
         self._inflate_stale()
         start, goal = self._point(start_xy, "start"), self._point(goal_xy, "goal")
@@ -298,7 +306,8 @@ def plan(
 ) -> Plan:
     """Plans once: from ``start`` to ``goal``, (x, y) in metres, for a disc of ``radius`` metres.
 
-    Raises OutOfMap, StartOccupied, GoalOccupied or NoPath, and ConfigError for an unknown planner.
+    A pose or a Goal is as good as a point. Raises OutOfMap, StartOccupied, GoalOccupied or NoPath,
+    ConfigError for an unknown planner, and InputError for what is no map or point.
     """
     config = PlannerConfig(planner=planner)
     return GridPlanner(grid, radius, unknown, config).plan(start, goal, explored)

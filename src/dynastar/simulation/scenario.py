@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.config import Field
+from dynastar.config import Field, self_checking
 from dynastar.geometry import Goal
 from dynastar.grid import OccupancyGrid, Unknown
 from dynastar.navigator import Preset
@@ -18,6 +18,7 @@ Floats = npt.NDArray[np.float64]
 AfterLast = Literal["loop", "back_and_forth", "stay", "vanish"]
 
 
+@self_checking
 class Noise(NamedTuple):
     """Errors of the simulated senses: Gaussian with half the bound as deviation, cut at the bound."""
 

@@ -69,7 +69,7 @@ BLOCKS = {
                      "each scan placed\nby its own stamp", "scan\nnavigator.sensing"),
     "senses": Block(1.97, B, 1.24, TALL[1], SENSE_FACE, "Surroundings",
                     "local map: free, seen,\nunseen; what moves\nand where to",
-                    "perception.local_map\n.tracking, .prediction"),
+                    "perception.tracking\nperception.prediction"),
     "recovery": Block(3.47, B, 1.2, TALL[1], PLAN_FACE, "Recovery",
                       "forget what was\nsensed, replan; in the\nend say \"blocked\"",
                       "navigator.mission"),
