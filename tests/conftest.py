@@ -8,6 +8,14 @@ import pytest
 ROOT = Path(__file__).parents[1]
 
 
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Compiles the kernels once, side by side, and not in each of the test processes."""
+    if not hasattr(session.config, "workerinput"):
+        from dynastar.cli.compiling import prepare
+
+        prepare()
+
+
 @pytest.fixture(scope="session")
 def data_dir() -> Path:
     """The public data sets: $DYNASTAR_DATA, else ../shared/data beside the clone, else skip."""

@@ -1,5 +1,8 @@
 """What a newcomer types in the first hour: taken where its meaning is clear, else refused in a sentence."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -151,3 +154,31 @@ def test_every_public_name_is_there_and_known_to_type_checkers():
             assert f" import {name} as {name}\n" in source
     assert source.count(" as ") - source.count("import ") <= 1
     assert sorted(dynastar.__all__) == dir(dynastar)
+
+
+USER_PROGRAM = """
+import numpy as np
+import dynastar
+from dynastar import Goal, LaserScan, Navigator, OccupancyGrid, Pose2D, RobotState, Twist
+
+def drive(scan: LaserScan, stamp: float) -> Twist:
+    occupied = np.zeros((40, 60), dtype=bool)
+    grid = OccupancyGrid(occupied, 0.05)
+    navigator = Navigator(grid, "pioneer3dx", dynastar.configured("paper", {"latency": 0.1}))
+    navigator.set_goal((1.0, 2.0))
+    navigator.set_goal([Goal(1.0, 2.0), (2.0, 1.0, 0.0)])
+    plan = dynastar.plan(grid, (0.5, 0.5), (2.5, 1.5), radius=0.2)
+    navigator.follow(plan.path)
+    twist = navigator.command(RobotState(stamp, Pose2D(0.5, 0.5), Twist(0.0, 0.0)), scan)
+    state: str = navigator.status.state
+    print(state, plan.path.length, twist.v)
+    return twist
+"""
+
+
+@pytest.mark.slow
+def test_a_program_of_a_users_own_passes_strict_type_checks(tmp_path):
+    (tmp_path / "program.py").write_text(USER_PROGRAM)
+    words = [sys.executable, "-m", "mypy", "--strict", "--config-file=", "program.py"]
+    found = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert "no issues" in found.stdout, found.stdout

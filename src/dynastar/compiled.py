@@ -1,4 +1,4 @@
-"""Compiling kernels: where they are kept, what is said meanwhile, and the bit tricks they need.
+"""Compiling kernels: where they are kept, and the bit tricks they need.
 
 numba notices edits only in the file that a kernel stands in, not in the files it imports from, so
 a shared cache would go stale; here all kernels' sources together name the folder. So it does, too,
@@ -8,13 +8,10 @@ for a program that has imported numba before.
 import hashlib
 import os
 import shutil
-import sys
 from pathlib import Path
 from typing import Any
 
 ROOM = "dynastar"  # in the user's cache
-ANNOUNCE = "DYNASTAR_ANNOUNCE"  # set by the command line, for its process and its workers
-ABOUT = 200  # compilations that driving takes, all in all
 
 
 def caches() -> Path:
@@ -22,14 +19,19 @@ def caches() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / ROOM
 
 
-def cache() -> Path:
-    """The folder for this version of the kernels."""
-    digest = hashlib.sha256()
+def folder() -> Path:
+    """The folder of this version's kernels, or the one that NUMBA_CACHE_DIR names."""
+    return Path(os.environ["NUMBA_CACHE_DIR"])
+
+
+def digest() -> str:
+    """What tells this version of the kernels from others."""
+    found = hashlib.sha256()
     for source in sorted(Path(__file__).parent.rglob("*.py")):
         text = source.read_bytes()
         if b"njit" in text:
-            digest.update(source.name.encode() + text)
-    return caches() / digest.hexdigest()[:16]
+            found.update(source.name.encode() + text)
+    return found.hexdigest()[:16]
 
 
 def clear() -> int:
@@ -41,48 +43,15 @@ def clear() -> int:
 
 
 if "NUMBA_CACHE_DIR" not in os.environ:
-    os.environ["NUMBA_CACHE_DIR"] = str(cache())
+    os.environ["NUMBA_CACHE_DIR"] = str(caches() / digest())
 
 import llvmlite.ir as ir  # noqa: E402 (numba reads the variable when it is imported)
 from numba import config, njit, types  # noqa: E402
-from numba.core import event  # noqa: E402
 from numba.extending import intrinsic  # noqa: E402
 
 config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
 
-__all__ = ["caches", "clear", "leading_zeros", "njit", "trailing_zeros"]
-
-
-class _Announcer(event.Listener):  # type: ignore[misc]
-    """Tells on stderr that kernels are being compiled, and on a terminal how far it is."""
-
-    def __init__(self) -> None:
-        self.done = 0
-        self._bar: Any = None
-
-    def on_start(self, event: Any) -> None:
-        """Announces the first compilation and counts all; those of other packages are left out."""
-        if not event.data["dispatcher"].py_func.__module__.startswith("dynastar"):
-            return
-        if self.done == 0:
-            from tqdm import tqdm
-
-            words = "dynastar compiles its kernels, once for this version"
-            if sys.stderr.isatty():
-                self._bar = tqdm(total=ABOUT, desc=words, file=sys.stderr, leave=False)
-            else:
-                print(f"{words}: about 40 s", file=sys.stderr)
-        self.done += 1
-        if self._bar is not None:
-            self._bar.total = max(self._bar.total, self.done)
-            self._bar.update()
-
-    def on_end(self, event: Any) -> None:
-        """Nothing to say."""
-
-
-if ANNOUNCE in os.environ:
-    event.register("numba:compile", _Announcer())
+__all__ = ["caches", "clear", "digest", "folder", "leading_zeros", "njit", "trailing_zeros"]
 
 
 @intrinsic

@@ -70,37 +70,42 @@ class OccupancyGrid:
     """
 
     values: npt.NDArray[np.int8]
-    frame: GridFrame = _UNIT_FRAME
-    keepout: Mask | None = None
-    speed_limit: npt.NDArray[np.float32] | None = None
+    frame: GridFrame
+    keepout: Mask | None
+    speed_limit: npt.NDArray[np.float32] | None
 
-    def __post_init__(self) -> None:
-        values = np.asarray(self.values)
+    def __init__(
+        self,
+        values: npt.ArrayLike,
+        frame: GridFrame | float = _UNIT_FRAME,
+        keepout: npt.ArrayLike | None = None,
+        speed_limit: npt.ArrayLike | None = None,
+    ) -> None:
+        values = np.asarray(values)
         if values.ndim != 2 or 0 in values.shape:
             raise MapError(f"a grid has shape {values.shape}: expected (rows, columns), both > 0")
         if values.dtype == np.bool_:
             values = np.where(values, OCCUPIED, FREE)
         if not np.issubdtype(values.dtype, np.integer) or values.min() < -1 or values.max() > 100:
             raise MapError("a grid's values have to be integers from -1 to 100, or booleans")
-        if isinstance(self.frame, Real) and not isinstance(self.frame, bool):
-            object.__setattr__(self, "frame", GridFrame(float(self.frame)))
-        if not isinstance(self.frame, GridFrame):
+        if isinstance(frame, Real) and not isinstance(frame, bool):
+            frame = GridFrame(float(frame))
+        if not isinstance(frame, GridFrame):
             raise MapError(
-                f"a grid's frame is {self.frame!r:.80}: expected a GridFrame, or the side of a "
+                f"a grid's frame is {frame!r:.80}: expected a GridFrame, or the side of a "
                 "cell in metres"
             )
-        if not (self.frame.resolution > 0 and all(map(math.isfinite, self.frame))):
-            raise MapError(f"a grid's frame is {self.frame}: expected a resolution > 0, all finite")
+        if not (frame.resolution > 0 and all(map(math.isfinite, frame))):
+            raise MapError(f"a grid's frame is {frame}: expected a resolution > 0, all finite")
         object.__setattr__(self, "values", _readonly(values, np.int8))
-        for name, dtype in (("keepout", np.bool_), ("speed_limit", np.float32)):
-            mask = getattr(self, name)
-            if mask is None:
-                continue
-            if np.shape(mask) != values.shape:
+        object.__setattr__(self, "frame", frame)
+        masks = ("keepout", keepout, np.bool_), ("speed_limit", speed_limit, np.float32)
+        for name, mask, dtype in masks:
+            if mask is not None and np.shape(mask) != values.shape:
                 raise MapError(
                     f"{name} has shape {np.shape(mask)}: expected the grid's {values.shape}"
                 )
-            object.__setattr__(self, name, _readonly(mask, dtype))
+            object.__setattr__(self, name, None if mask is None else _readonly(mask, dtype))
         if self.speed_limit is not None and not (self.speed_limit > 0).all():
             raise MapError("a speed limit has to be > 0 m/s; use keepout where nothing may drive")
 

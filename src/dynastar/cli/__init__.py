@@ -12,14 +12,12 @@ from importlib import import_module
 from dynastar.cli.arguments import build_parser
 from dynastar.errors import DynastarError, InputError
 
-ANNOUNCE = "DYNASTAR_ANNOUNCE"  # read by dynastar.compiled, which imports what is heavy
 INTERRUPTED = 130
 BROKEN_PIPE = 141
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Runs a command and returns its exit status; errors of dynastar's end here, in one line."""
-    os.environ[ANNOUNCE] = "1"
     try:
         arguments = build_parser().parse_args(argv)
         command = import_module(f"dynastar.cli.{arguments.command}")

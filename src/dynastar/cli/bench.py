@@ -13,6 +13,7 @@ from dynastar.bench.keeping import FailureKeeper
 from dynastar.bench.settings import read_settings
 from dynastar.bench.statistics import succeeded
 from dynastar.bench.tables import Cell, Table, as_text
+from dynastar.cli.compiling import prepare
 from dynastar.cli.outputs import check_file, make_folder
 from dynastar.cli.show import as_json, as_table
 from dynastar.config import choose
@@ -50,6 +51,7 @@ def _run(arguments: argparse.Namespace, options: Options) -> int:
             "--out goes with `bench all` or --replay; --json-out FILE takes the result"
         )
     keep = None if file is None else _beside(file)
+    prepare()
     result = run_suite(arguments.suite, suite, options, progress=True, keep=keep)
     _write(result, file, keep)
     if arguments.json_out == "-":
@@ -71,6 +73,7 @@ def _run_all(arguments: argparse.Namespace) -> int:
     folder = make_folder("--out", arguments.out or Path("out/bench"))
     file = check_file("--json-out", arguments.json_out) or folder / "all.json"
     keep = _beside(file)
+    prepare()
     result = run_all(options, progress=True, keep=keep)
     _write(result, file, keep)
     save(picture(result), folder / "all.png")
@@ -90,6 +93,7 @@ def _replay(arguments: argparse.Namespace, options: Options) -> int:
     file = check_file("--json-out", arguments.json_out)
     folder = make_folder("--out", arguments.out or Path("out", name))
     suite = load_suite(arguments.suite)
+    prepare()
     row, episode = replay(arguments.suite, suite, options, number, repeat, folder)
     write_folder(folder, episode, row, gif=not arguments.no_gif)
     print(f"pictures, numbers and the episode are in {folder}", file=sys.stderr)

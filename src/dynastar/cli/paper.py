@@ -10,6 +10,7 @@ from typing import Any
 from dynastar.bench.report import REPORTS, Asked, Report, report_targets, write
 from dynastar.bench.settings import read_settings
 from dynastar.bench.tables import Table, as_markdown, as_text, fill
+from dynastar.cli.compiling import prepare
 from dynastar.cli.outputs import check_file
 from dynastar.cli.show import as_json
 from dynastar.errors import InputError
@@ -35,6 +36,7 @@ def execute(arguments: argparse.Namespace) -> int:
         progress=True,
         settings=settings,
     )
+    prepare()
     names = list(REPORTS) if arguments.what == "all" else [arguments.what]
     result: dict[str, Any] = {"seed": asked.seed, "maps": asked.maps}
 

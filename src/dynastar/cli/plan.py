@@ -4,6 +4,7 @@ import argparse
 from typing import Any
 
 from dynastar import io, planning
+from dynastar.cli.compiling import prepare
 from dynastar.cli.show import as_json, as_table
 from dynastar.config import choose
 from dynastar.errors import InputError
@@ -24,7 +25,8 @@ def execute(arguments: argparse.Namespace) -> int:
         "radius": arguments.radius,
         "unknown": arguments.unknown,
     }
-    planning.plan(grid, start, goal, **settings)  # compiles
+    prepare()
+    planning.plan(grid, start, goal, **settings)  # loads
     plan = planning.plan(grid, start, goal, **settings)
     summary = {
         "planner": arguments.planner,

@@ -9,6 +9,7 @@ from typing import Any
 
 from dynastar import io, metrics
 from dynastar.bench.settings import merged, read_settings
+from dynastar.cli.compiling import prepare
 from dynastar.cli.outputs import make_folder
 from dynastar.cli.show import as_json, as_table
 from dynastar.episode import Episode
@@ -26,6 +27,7 @@ def execute(arguments: argparse.Namespace) -> int:
     settings = read_settings(arguments.set, scenario.preset, scenario.navigator)
     scenario = replace(scenario, navigator=merged(scenario.navigator, settings))
     folder = make_folder("--out", arguments.out or Path("out", safe_name(scenario)))
+    prepare()
     episode = io.run(scenario, progress=True)
     summary = metrics.measure(episode)._asdict()
     write_folder(folder, episode, summary, gif=not arguments.no_gif)

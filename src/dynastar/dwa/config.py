@@ -1,9 +1,12 @@
 """The dynamic window's settings: the weights of Eq. 9, what is sampled, and how it is scored."""
 
 import math
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple, get_args
 
 from dynastar.config import Field, self_checking
+
+Search = Literal["manoeuvres", "arcs"]
+SEARCHES: tuple[Search, ...] = get_args(Search)
 
 
 @self_checking
@@ -47,7 +50,7 @@ class DwaConfig(NamedTuple):
 
     weights: Weights = Weights()
     search: Annotated[
-        Literal["manoeuvres", "arcs"],
+        Search,
         Field("samples are held for a while and then follow, stop or back off; or constant arcs"),
     ] = "manoeuvres"
     progress: Annotated[

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from dynastar.config import choose
 from dynastar.dwa.clearance import kept_margin
+from dynastar.dwa.config import DwaConfig, Search
 from dynastar.dwa.dwa import Choice, DynamicWindow
 from dynastar.dwa.scene import AT_REST, DistanceField, Scene
 from dynastar.errors import InputError
@@ -23,10 +24,11 @@ from dynastar.navigator.progress import Progress
 from dynastar.navigator.replanning import Route
 from dynastar.navigator.sensing import Sensing
 from dynastar.navigator.status import RobotState, Status
+from dynastar.navigator.warm_up import ROOM, Straight, drive_a_little
 from dynastar.path import Path
 from dynastar.perception import MovingObstacle
 from dynastar.perception.prediction import predict
-from dynastar.planning import Planner
+from dynastar.planning import Planner, warm_up_all
 from dynastar.robot import ROBOTS, Robot, slew
 from dynastar.scan import LaserScan
 
@@ -88,6 +90,9 @@ class Navigator:
         self._commands = Commands(robot.limits, config.period, config.latency)
         self.planning_map = self._planning_map_of(grid)
         self.route = Route(self.planning_map, self.mission, config)
+        if planner is None:
+            warm_up_all()
+        warm_up(config.dwa.search)
 
     @property
     def status(self) -> Status:
@@ -122,7 +127,7 @@ class Navigator:
         self.sensing.set_grid(grid)
         return PlanningMap(grid, self.config, radii, self._planner)
 
-    def set_goal(self, goal: Goal | Sequence[float] | Sequence[Goal | Sequence[float]]) -> None:
+    def set_goal(self, goal: Sequence[float | None] | Sequence[Sequence[float | None]]) -> None:
         """One goal, or several to reach in order: (x, y) metres and a heading in radians or None.
 
         Tuples do as well as Goals. Raises InputError for what is no goal.
@@ -322,3 +327,14 @@ class Navigator:
         if abs(twist.omega) > 0.1:
             return False
         return abs(wrap_angle(goal.heading - state.pose.theta)) <= self.config.heading_tolerance
+
+
+_warm: set[Search] = set()
+
+
+def warm_up(search: Search) -> None:
+    """Compiles or loads what a kind of commands (``dwa.search``) calls, once a process."""
+    if search not in _warm:
+        _warm.add(search)
+        config = NavigatorConfig(latency=0.1, dwa=DwaConfig(search=search))
+        drive_a_little(Navigator(ROOM, ROBOTS["jackal"], config, Straight()))

@@ -3,7 +3,7 @@
 from dynastar.planning.any_angle import straighten
 from dynastar.planning.external import Planner, plan_by
 from dynastar.planning.heuristic import PLANNERS, HeuristicConfig
-from dynastar.planning.planner import GridPlanner, Plan, PlannerConfig, plan, warm_up, warm_up_rest
+from dynastar.planning.planner import GridPlanner, Plan, PlannerConfig, plan, warm_up, warm_up_all
 from dynastar.planning.search import ALGORITHMS, SearchGrid, SearchResult
 from dynastar.planning.segments import segment_clear
 from dynastar.planning.smoothing import smooth
@@ -24,5 +24,5 @@ __all__ = [
     "smooth",
     "straighten",
     "warm_up",
-    "warm_up_rest",
+    "warm_up_all",
 ]

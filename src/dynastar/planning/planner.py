@@ -106,7 +106,6 @@ class GridPlanner:
         self._stale: tuple[int, int, int, int] | None = (
             None  # marked since: top, left, bottom, right
         )
-        warm_up()
 
     @property
     def blocked(self) -> Mask:
@@ -167,6 +166,7 @@ class GridPlanner:
         """
         planner = planner or self.config.planner
         start_xy, goal_xy = as_point(start_xy, "the start"), as_point(goal_xy, "the goal")
+        warm_up()
         began = time.perf_counter()
         self._inflate_stale()
         start, goal = self._point(start_xy, "start"), self._point(goal_xy, "goal")
@@ -315,24 +315,28 @@ def plan(
 
 @functools.cache
 def warm_up() -> None:
-    """Compiles or loads the kernels, once in a process, so that no plan has to wait for them."""
+    """Compiles or loads the kernels, once in a process, so that no plan's time counts it."""
     blocked = np.zeros((3, 3), dtype=bool)
     SearchGrid(blocked).search((0, 0), (2, 2), "improved")
     smooth(blocked, [[0.5, 0.5], [0.5, 2.5], [2.5, 2.5]], 0.0, 1.0)
     first_contact(mask_bytes(blocked), np.ones((2, 2)), 0.5)
 
 
-def warm_up_rest() -> None:
-    """The same for what not every plan needs: smoothing at any angle, and searching again."""
+@functools.cache
+def warm_up_all() -> None:
+    """The same for every planner, for smoothing at any angle, and for searching again."""
     rng = np.random.default_rng(0)
     blocked = rng.random((30, 30)) < 0.3
     blocked[[0, -1]] = blocked[:, [0, -1]] = False  # so many corners, and yet a way round
-    grid = SearchGrid(blocked)
-    way = grid.search((0, 0), (29, 29), "auto").cells
-    straighten(blocked, way + 0.5, 0.0)
-    row, column = map(int, way[3])
-    grid.update(row, column, [[True]])
-    grid.search((0, 0), (29, 29), "auto")
+    grid = OccupancyGrid(100 * blocked.astype(np.int8), 1.0)
+    for planner in ALGORITHMS:
+        plan(grid, (0.5, 0.5), (29.5, 29.5), planner, explored=True)
+    search = SearchGrid(blocked)
+    cells = search.search((0, 0), (29, 29), "auto").cells
+    straighten(blocked, cells + 0.5, 0.0)
+    row, column = map(int, cells[3])
+    search.update(row, column, [[True]])
+    search.search((0, 0), (29, 29), "auto")
 
 
 def _without_repeats(line: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

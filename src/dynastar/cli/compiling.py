@@ -1,0 +1,85 @@
+"""Compiling all kernels ahead of time, in processes side by side, and saying so."""
+
+import subprocess
+import sys
+import time
+
+from tqdm import tqdm
+
+from dynastar import compiled
+
+PARTS = "plan_and_simulate", "drive"
+FILES = 400  # that the cache holds, about, when all is compiled
+WAIT = 0.2  # s
+WORDS = "dynastar compiles its kernels, once for this version"
+
+
+def prepare() -> float:
+    """Compiles what the cache lacks of this version; how long that took in s, 0 if it lacked nothing.
+
+    A process that fails is passed over: what it leaves is compiled when it is called.
+    """
+    mark = compiled.folder() / f"complete-{compiled.digest()}"
+    if mark.exists():
+        return 0.0
+    began = time.perf_counter()
+    if not sys.stderr.isatty():
+        print(f"{WORDS}: about half a minute", file=sys.stderr)
+    children = [_start(part) for part in PARTS]
+    try:
+        _wait(children)
+    finally:
+        for child in children:
+            child.kill()
+            child.wait()
+    if not any(child.returncode for child in children):
+        mark.parent.mkdir(parents=True, exist_ok=True)
+        mark.touch()
+    seconds = time.perf_counter() - began
+    print(f"compiled in {seconds:.0f} s", file=sys.stderr)
+    return seconds
+
+
+def _start(part: str) -> "subprocess.Popen[bytes]":
+    code = f"from dynastar.cli import compiling; compiling.{part}()"
+    quiet = subprocess.DEVNULL
+    return subprocess.Popen([sys.executable, "-c", code], stdin=quiet, stdout=quiet, stderr=quiet)
+
+
+def _wait(children: "list[subprocess.Popen[bytes]]") -> None:
+    """Waits for processes, with a bar of the files in the cache on a terminal."""
+    folder = compiled.folder()
+    with tqdm(
+        total=FILES,
+        desc=WORDS,
+        file=sys.stderr,
+        leave=False,
+        disable=not sys.stderr.isatty(),
+        bar_format="{desc} |{bar}| {elapsed}",
+    ) as bar:
+        while any(child.poll() is None for child in children):
+            time.sleep(WAIT)
+            bar.n = min(FILES, sum(1 for _ in folder.rglob("*.nb?")))
+            bar.refresh()
+
+
+def plan_and_simulate() -> None:
+    """What planners, the simulator and the suites that draw worlds call."""
+    from dynastar.bench.suites import people, random_worlds
+    from dynastar.planning import warm_up_all
+    from dynastar.simulation import warm_up
+
+    warm_up_all()
+    warm_up()
+    people.judge(0, 0)
+    for number in range(len(random_worlds.ROBOT_NAMES)):  # discs and polygons
+        random_worlds.make(0, number)
+
+
+def drive() -> None:
+    """What a navigator calls besides."""
+    from dynastar.dwa.config import SEARCHES
+    from dynastar.navigator.navigator import warm_up
+
+    for search in SEARCHES:
+        warm_up(search)

@@ -1,0 +1,60 @@
+"""Nothing is compiled, nor read from the cache, once a navigator is there."""
+
+import subprocess
+import sys
+
+import pytest
+
+# Compilations and loads from the cache in missions of a few seconds; argv: data folder or "", suites.
+COUNT = """
+import sys
+from dataclasses import replace
+from pathlib import Path
+import dynastar.compiled
+from numba.core import caching, event
+from dynastar.bench.runner import Options, choose_missions, load_suite
+from dynastar.simulation.run import drive
+
+compiled, loaded, driving = [], [], False
+
+class Compiled(event.Listener):
+    def on_start(self, event):
+        compiled.append(event.data["dispatcher"].py_func.__qualname__)
+    def on_end(self, event):
+        pass
+
+load = caching.Cache.load_overload
+def load_overload(cache, *arguments):
+    if driving:
+        loaded.append(cache._py_func.__qualname__)
+    return load(cache, *arguments)
+
+event.register("numba:compile", Compiled())
+caching.Cache.load_overload = load_overload
+options = Options(data=Path(sys.argv[1]) if sys.argv[1] else None, missions=2)
+for name in sys.argv[2:]:
+    suite = load_suite(name)
+    for mission in choose_missions(suite, options)[0][:2]:
+        for preset in "default", "printed":
+            scenario = replace(suite.scenario(mission, options, 0), preset=preset)
+            drive(replace(scenario, time_limit=0.1))  # the simulator's own
+            driving = True
+            drive(replace(scenario, time_limit=4.0))
+            driving = False
+print(compiled, loaded)
+"""
+
+
+def counted(*arguments):
+    return subprocess.run(
+        [sys.executable, "-c", COUNT, *arguments], capture_output=True, text=True, check=True
+    ).stdout.strip()
+
+
+def test_driving_compiles_nothing_and_loads_nothing():
+    assert counted("", "office", "paper", "random", "people") == "[] []"
+
+
+@pytest.mark.data
+def test_nor_do_the_public_suites(data_dir):
+    assert counted(str(data_dir), "barn", "dynabarn", "mrpb", "crowd", "maps") == "[] []"
