@@ -79,7 +79,7 @@ def test_a_period_is_driven_at_the_mean_of_its_ends(limits, v, omega, to_v, to_o
 def test_commands_under_way_take_the_robot_where_the_drive_does(limits, v, omega, seed):
     random = np.random.default_rng(seed)
     commands, durations = random.uniform(-1, 1, (3, 2)), random.uniform(0.0, 0.1, 3)
-    x, y, theta, v1, w1 = coast(0.3, -0.2, 9.0, v, omega, commands, durations, limits)
+    x, y, theta, v1, w1 = coast((0.3, -0.2, 9.0), (v, omega), commands, durations, limits)
     at_x, at_y, turned = 0.3, -0.2, 9.0
     for command, duration in zip(commands, durations, strict=True):
         h = duration / 400

@@ -62,17 +62,20 @@ def driven(pose, v, omega, wanted_v, wanted_omega, limits, duration):
 
 
 @njit(cache=True)
-def coast(x, y, theta, v, omega, commands, durations, limits):
+def coast(pose, twist, commands, durations, limits):
     """State after commands that are already on their way: (x, y, theta, v, omega).
 
-    ``commands`` (n, 2) are followed for ``durations`` (n,) seconds each.
+    ``pose`` is (x, y, theta) and ``twist`` (v, omega) now; ``commands`` (n, 2) are followed for
+    ``durations`` (n,) seconds each.
     """
-    pose = (x, y, math.cos(theta), math.sin(theta))
+    x, y, theta = pose
+    v, omega = twist
+    at = (x, y, math.cos(theta), math.sin(theta))
     turned = 0.0
     for i in range(len(durations)):
         part = 0.25 * durations[i]
         for _ in range(4):
             before = omega
-            pose, v, omega = driven(pose, v, omega, commands[i, 0], commands[i, 1], limits, part)
+            at, v, omega = driven(at, v, omega, commands[i, 0], commands[i, 1], limits, part)
             turned += 0.5 * (before + omega) * part
-    return pose[0], pose[1], theta + turned, v, omega
+    return at[0], at[1], theta + turned, v, omega

@@ -83,7 +83,11 @@ class Commands:
         if not durations:
             return state.pose, state.twist
         x, y, theta, v, omega = coast(
-            *state.pose, *state.twist, np.array(commands), np.array(durations), self.limits
+            tuple(map(float, state.pose)),
+            tuple(map(float, state.twist)),
+            np.array(commands, dtype=np.float64),
+            np.array(durations),
+            self.limits,
         )
         return Pose2D(x, y, theta), Twist(v, omega)
 

@@ -65,9 +65,8 @@ class PlanningMap:
 
     def take_in(self, layer: LocalMap) -> bool:
         """Marks what the local map shows occupied and clears what it shows free; whether that changed."""
-        low, high, under = self._window(layer)
         top, bottom, left, right = take_over(
-            layer.states, under, low, high,
+            layer.states, self._window(layer),
             self._marks, self.known.mask, self._unknown, self.seen, self.cleared,
         )  # fmt: skip
         if bottom <= top:
@@ -142,8 +141,8 @@ class PlanningMap:
         if self._under is not None and self._under[0] == layer.origin:
             return self._under[1]
         window = cells_under(
-            len(layer.states), layer.config.resolution, *layer.origin,
-            *map(float, self.frame), *self.prior.shape,
+            len(layer.states), layer.config.resolution, layer.origin,
+            tuple(map(float, self.frame)), self.prior.shape,
         )  # fmt: skip
         self._under = layer.origin, window
         return self._under[1]

@@ -9,20 +9,22 @@ from dynastar.perception.local_map import SEEN_FREE, SEEN_OCCUPIED
 
 
 @njit(cache=True)
-def cells_under(n, resolution, x0, y0, frame_resolution, frame_x, frame_y, yaw, rows, columns):
+def cells_under(n, resolution, corner, frame, shape):
     """The planning map's cell under each of a local map's, and the window [low, high) they are in.
 
-    The local map has n x n cells and its low corner at (x0, y0); the frame is the planning map's,
-    of rows x columns cells. A cell is an index (n, n) into the flattened planning map, or the one
-    behind its last for what lies off it.
+    The local map has n x n cells and its low corner at ``corner`` (x, y); ``frame`` (resolution, x, y,
+    yaw) and ``shape`` are the planning map's. A cell is an index (n, n) into the flattened planning map,
+    or the one behind its last for what lies off it.
     """
+    frame_resolution, frame_x, frame_y, yaw = frame
+    rows, columns = shape
     cos, sin = math.cos(yaw), math.sin(yaw)
     low, high = np.array((rows, columns), np.int64), np.zeros(2, np.int64)
     under = np.empty((n, n), np.int64)
     for i in range(n):
-        dy = (i + 0.5) * resolution + y0 - frame_y
+        dy = (i + 0.5) * resolution + corner[1] - frame_y
         for j in range(n):
-            dx = (j + 0.5) * resolution + x0 - frame_x
+            dx = (j + 0.5) * resolution + corner[0] - frame_x
             row = int(math.floor((cos * dy - sin * dx) / frame_resolution))
             column = int(math.floor((cos * dx + sin * dy) / frame_resolution))
             inside = 0 <= row < rows and 0 <= column < columns
@@ -34,13 +36,14 @@ def cells_under(n, resolution, x0, y0, frame_resolution, frame_x, frame_y, yaw, 
 
 
 @njit(cache=True)
-def take_over(states, under, low, high, marks, known, unknown, seen, cleared):
+def take_over(states, window, marks, known, unknown, seen, cleared):
     """Brings ``seen`` and ``cleared`` up to date; returns the window (row, end, column, end) that changed.
 
     Seen is what a local map's ``states`` show occupied off the ``known`` obstacles, until they show it
-    free; cleared is what they show free of the ``unknown``. ``marks`` (rows * columns + 1,) is room
-    to work in.
+    free; cleared is what they show free of the ``unknown``. ``window`` is what ``cells_under`` returns,
+    ``marks`` (rows * columns + 1,) room to work in.
     """
+    low, high, under = window
     shape = known.shape
     flat, marks = marks, marks[: shape[0] * shape[1]].reshape(shape)
     marks[low[0] : high[0], low[1] : high[1]] = 0
