@@ -2,19 +2,22 @@
 
 VENV := .venv
 BIN := $(VENV)/bin
+PYTHONS := 3.11 3.12 3.13 3.14
 STAMP := $(VENV)/.installed
 PEERS := benchmarks/.venv
 FIND_PYTHON = for python in python3.11 python3 python3.12 python3.13 python; do \
 	$$python -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2>/dev/null \
 	&& echo $$python && break; done
 
-.PHONY: help setup check test demo suites paper bench clean
+.PHONY: help setup check test test-all dist demo suites paper bench clean
 
 help:
 	@echo "make setup   make .venv and install dynastar with its tools into it"
 	@echo "make demo    drive across the office; pictures and numbers in out/demo"
 	@echo "make test    run the tests (those on public data, too, where DYNASTAR_DATA has it)"
+	@echo "make test-all  the same with each Python of $(PYTHONS) that is found, installed from the wheel"
 	@echo "make check   ruff, mypy, import-linter"
+	@echo "make dist    wheel and source distribution in dist"
 	@echo "make suites  the suites movingai (needs DYNASTAR_DATA) and paper; JSON in out/suites"
 	@echo "make paper   the paper's tables and figures, and those of docs/paper.md; two hours"
 	@echo "make bench   how fast it is, beside others, in an environment of its own"
@@ -39,8 +42,25 @@ check: setup
 test: setup
 	$(BIN)/python -m pytest -n 2
 
+dist: setup
+	rm -rf dist
+	$(BIN)/python -m build --outdir dist .
+
+# Tests the wheel, and drives the demo outside of the clone.
+test-all: dist
+	@for version in $(PYTHONS); do \
+	python=$$(command -v python$$version || uv python find --no-project $$version 2>/dev/null); \
+	test -n "$$python" || { echo "Python $$version: not found, not tried"; continue; }; \
+	venv=$(CURDIR)/.venvs/$$version; \
+	test -x $$venv/bin/python || "$$python" -m venv $$venv || exit 1; \
+	$$venv/bin/python -m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps dist/*.whl \
+	&& $$venv/bin/python -m pip install --quiet --disable-pip-version-check "$$(echo dist/*.whl)[dev]" \
+	&& (cd $$venv && bin/dynastar demo --out demo --no-gif) \
+	&& $$venv/bin/python -m pytest -n 2 || { echo "Python $$version: failed"; exit 1; }; \
+	echo "Python $$version: passed"; done
+
 demo: setup
-	$(BIN)/dynastar run examples/office/office.toml --out out/demo
+	$(BIN)/dynastar demo --out out/demo
 
 suites: setup
 	@mkdir -p out/suites
@@ -73,6 +93,6 @@ bench: $(PEERS)/.installed
 	$(PEERS)/bin/python benchmarks/startup.py
 
 clean:
-	rm -rf $(VENV) $(PEERS) out build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(VENV) .venvs $(PEERS) out build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	rm -rf .import_linter_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -3,10 +3,10 @@
 from collections.abc import Callable
 from functools import cache, partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.figure import Figure
 from shapely.geometry import LineString, Point, Polygon
 from tqdm import tqdm
 
@@ -21,6 +21,9 @@ from dynastar.simulation import run
 from dynastar.viewer import schematics
 from dynastar.viewer.panels import Searched, draw_driven, draw_searches, draw_unaware
 from dynastar.viewer.sheet import save
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Floats = npt.NDArray[np.float64]
 
@@ -47,12 +50,12 @@ def draw_all(folder: Path, progress: bool = False) -> list[Path]:
     return written
 
 
-def numbering() -> Figure:
+def numbering() -> "Figure":
     """Fig. 1: a small grid's cells by Eq. 1."""
     return schematics.draw_numbering(OccupancyGrid.from_occupied(drawn(SMALL)), SHOWN)
 
 
-def searches() -> Figure:
+def searches() -> "Figure":
     """Figs. 2 and 3: the cells that the traditional and the improved A* expand, and their paths."""
     own = own_forty()
     grid = SearchGrid(own.occupied)
@@ -73,7 +76,7 @@ def searches() -> Figure:
     return draw_searches(OccupancyGrid.from_occupied(own.occupied), found)
 
 
-def unaware() -> Figure:
+def unaware() -> "Figure":
     """Fig. 6: the improved A* on the map alone, and where that runs into what the map lacks."""
     world = paper.own_world()
     way = plan(world.grid, paper.START, paper.GOAL, "improved").grid_path.points
@@ -94,7 +97,7 @@ def touches(way: Floats, obstacles: tuple[Floats, ...]) -> Floats:
     return np.array(found).reshape(-1, 2)
 
 
-def driven() -> Figure:
+def driven() -> "Figure":
     """Fig. 7: what the hybrid drives in that world."""
     return draw_driven(own_mission())
 

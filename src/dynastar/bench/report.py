@@ -3,9 +3,7 @@
 import csv
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
-
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from dynastar.bench import ablation, presets, table1, table1_tables, table3, targets, terms
 from dynastar.bench.families import KINDS
@@ -15,6 +13,9 @@ from dynastar.io.files import written_aside
 from dynastar.navigator import Preset
 from dynastar.viewer.sheet import save
 from dynastar.viewer.spread import Column, Spread, draw_columns, draw_spreads
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Rows = Sequence[Mapping[str, Any]]
 
@@ -44,7 +45,7 @@ class Report(NamedTuple):
     found: dict[str, Any]
     tables: Sequence[Table] = ()
     rows: Mapping[str, Rows] = {}
-    picture: Figure | None = None
+    picture: "Figure | None" = None
 
 
 def report_table1(asked: Asked) -> Report:

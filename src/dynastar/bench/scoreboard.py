@@ -4,15 +4,16 @@ import time
 from collections.abc import Mapping, Sequence
 from itertools import zip_longest
 from pathlib import Path
-from typing import Any
-
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING, Any
 
 from dynastar.bench.runner import SUITES, Job, Options, jobs_of, load_suite, result_of, run_jobs
 from dynastar.bench.statistics import bootstrap
 from dynastar.bench.tables import Cell, Table
 from dynastar.errors import InputError
 from dynastar.viewer.intervals import Estimate, Measure, draw_intervals
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 MOST_GROUPS = 12  # lines of a suite's groups in the table
 
@@ -113,7 +114,7 @@ def _line(name: str, of: Result) -> tuple[Cell, ...]:
     )
 
 
-def picture(result: Result) -> Figure:
+def picture(result: Result) -> "Figure":
     """Successes, contacts and time ratios of the suites, with 95 % intervals."""
     suites = result["suites"]
     return draw_intervals(

@@ -86,8 +86,15 @@ examples:
 The kernels lie in ~/.cache/dynastar (or $XDG_CACHE_HOME/dynastar), a folder for each version of
 their sources; $NUMBA_CACHE_DIR, if it is set, is where they lie instead and is not cleared."""
 
+DEMO_EXAMPLES = """\
+examples:
+  dynastar demo
+  dynastar demo --list
+  dynastar demo --copy my-examples"""
+
 EXAMPLES = """\
 examples:
+  dynastar demo
   dynastar plan office.yaml --start 2 2 --goal 38 23 --radius 0.25
   dynastar run examples/office/office.toml --out out/office
   dynastar bench paper --missions 20
@@ -167,6 +174,7 @@ def build_parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
     _add_plan(commands)
     _add_run(commands)
+    _add_demo(commands)
     _add_bench(commands)
     _add_paper(commands)
     warmup = commands.add_parser(
@@ -225,6 +233,26 @@ def _add_run(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
     run.add_argument("--json", action="store_true", help="JSON on stdout instead of a table")
     run.add_argument("--no-gif", action="store_true", help="leave out the animation")
     _add_set(run)
+
+
+def _add_demo(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
+    demo = commands.add_parser(
+        "demo",
+        help="drive an example that comes with dynastar",
+        description="Drives a robot across an office, or through another of the examples that come with "
+        "dynastar; draws it and measures it, as `dynastar run` does.",
+        epilog=DEMO_EXAMPLES,
+    )
+    demo.add_argument(
+        "name", nargs="?", default="office", metavar="NAME", help="of --list (default office)"
+    )
+    demo.add_argument("--out", type=path, metavar="DIR", help="default out/<scenario's name>")
+    demo.add_argument("--json", action="store_true", help="JSON on stdout instead of a table")
+    demo.add_argument("--no-gif", action="store_true", help="leave out the animation")
+    demo.add_argument("--list", action="store_true", help="list the examples instead")
+    demo.add_argument(
+        "--copy", type=path, metavar="DIR", help="copy all of them into a folder instead, to change"
+    )
 
 
 def _add_bench(commands: "argparse._SubParsersAction[OneLineParser]") -> None:

@@ -18,6 +18,7 @@ from dynastar.cli.outputs import check_file, make_folder
 from dynastar.cli.show import as_json, as_table
 from dynastar.config import choose
 from dynastar.errors import InputError
+from dynastar.extras import require
 from dynastar.io.files import write_json
 
 SHOWN_FAILURES = 20
@@ -28,6 +29,7 @@ COMMANDS = {"all": "run every suite", "compare": "compare two results"}
 
 def execute(arguments: argparse.Namespace) -> int:
     """Runs a suite, all of them, or one mission again, or compares two results."""
+    require("bench", "the suites' statistics and pictures need")
     if arguments.suite == "compare":
         return _compare(arguments)
     if arguments.files:

@@ -14,11 +14,13 @@ from dynastar.cli.compiling import prepare
 from dynastar.cli.outputs import check_file
 from dynastar.cli.show import as_json
 from dynastar.errors import InputError
+from dynastar.extras import require
 from dynastar.io.files import write_json, written_aside
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Makes what is asked for; prints its tables, or JSON, and writes its files into the folder."""
+    require("bench", "the tables and figures need")
     file = check_file("--json-out", arguments.json_out)
     if arguments.set and arguments.what in ("table1", "figures"):
         raise InputError(

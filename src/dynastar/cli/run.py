@@ -13,6 +13,7 @@ from dynastar.cli.compiling import prepare
 from dynastar.cli.outputs import make_folder
 from dynastar.cli.show import as_json, as_table
 from dynastar.episode import Episode
+from dynastar.errors import MissingPackage
 from dynastar.io.files import write_json
 from dynastar.simulation import Scenario
 
@@ -31,7 +32,7 @@ def execute(arguments: argparse.Namespace) -> int:
     episode = io.run(scenario, progress=True)
     summary = metrics.measure(episode)._asdict()
     write_folder(folder, episode, summary, gif=not arguments.no_gif)
-    print(f"pictures, numbers and the episode are in {folder}", file=sys.stderr)
+    print(f"what came of it is in {folder}", file=sys.stderr)
     print(as_json(summary) if arguments.json else as_table(summary))
     arrived = summary["outcome"] == "arrived" and not episode.contact
     return 0 if arrived else 1
@@ -44,11 +45,14 @@ def safe_name(scenario: Scenario) -> str:
 
 def write_folder(folder: Path, episode: Episode, summary: dict[str, Any], gif: bool) -> None:
     """Writes figure.png, summary.json, config.json, episode.npz and, if asked, animation.gif."""
-    from dynastar.viewer.figure import draw_episode
-
     write_json(folder / "summary.json", summary)
     write_json(folder / "config.json", {"scenario": episode.scenario, "config": episode.config})
     io.save_episode(episode, folder / "episode.npz")
+    try:
+        from dynastar.viewer.figure import draw_episode
+    except MissingPackage as missing:
+        print(f"without pictures: {missing}", file=sys.stderr)
+        return
     draw_episode(episode, folder / "figure.png")
     if gif:
         from dynastar.viewer.animation import animate_episode

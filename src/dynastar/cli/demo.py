@@ -1,0 +1,46 @@
+"""``dynastar demo``: drive an example that comes with dynastar, or copy them all."""
+
+import argparse
+import shutil
+import sys
+from pathlib import Path
+
+from dynastar.cli import run
+from dynastar.config import choose
+from dynastar.errors import InputError
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Runs an example as ``dynastar run`` does, or copies or lists the examples."""
+    if arguments.list:
+        print("\n".join(scenarios()))
+        return 0
+    if arguments.copy is not None:
+        return _copy(arguments.copy)
+    choose(arguments.name, scenarios(), "example")
+    arguments.scenario = scenarios()[arguments.name]
+    arguments.seed = arguments.preset = None
+    arguments.set = []
+    return run.execute(arguments)
+
+
+def examples() -> Path:
+    """The folder of examples: beside the package as installed, or in the clone it is imported from."""
+    package = Path(__file__).parents[1]
+    shipped, clone = package / "examples", package.parents[1] / "examples"
+    return shipped if shipped.is_dir() else clone
+
+
+def scenarios() -> dict[str, Path]:
+    """The examples' scenario files by name."""
+    return {file.stem: file for file in sorted(examples().rglob("*.toml"))}
+
+
+def _copy(folder: Path) -> int:
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise InputError(f"--copy {folder}: is there already; expected a new or an empty folder")
+    shutil.copytree(
+        examples(), folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__")
+    )
+    print(f"the examples are in {folder}", file=sys.stderr)
+    return 0

@@ -1,0 +1,22 @@
+"""Packages that only some uses need; ``pip install 'dynastar[EXTRA]'`` installs them."""
+
+import importlib.util
+
+from dynastar.errors import MissingPackage
+
+EXTRAS = {
+    "viewer": ("matplotlib",),
+    "bench": ("matplotlib", "scipy"),
+}
+
+
+def installed(extra: str) -> bool:
+    """Whether an extra's packages are there."""
+    return all(importlib.util.find_spec(package) for package in EXTRAS[extra])
+
+
+def require(extra: str, what: str) -> None:
+    """Raises MissingPackage, which calls what needs them ``what``, if an extra's packages are not there."""
+    if not installed(extra):
+        packages = " and ".join(EXTRAS[extra])
+        raise MissingPackage(f"{what} {packages}: pip install 'dynastar[{extra}]'")
