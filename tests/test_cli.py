@@ -150,7 +150,7 @@ def test_no_path_is_1(capsys: pytest.CaptureFixture[str], folder: Path) -> None:
         (["--start", "1.5", "1.5", "--goal", "2", "2", "--radius", "-1"], "negative"),
         (["--start", "1.5", "1.5", "--goal", "2", "2", "--planner", "astra"], "'astar'"),
         (["--start", "1.5", "1.5", "--goal", "2", "2", "--unknown", "maybe"], "blocked"),
-        (["--start", "1.5", "--goal", "2", "2"], "2 arguments"),
+        (["--start", "1.5", "--goal", "2", "2"], "--start"),
         (["--start", "1.5", "1.5"], "--goal"),
     ],
 )

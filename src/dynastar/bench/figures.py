@@ -108,7 +108,7 @@ def own_mission() -> Episode:
     return run(paper.own_world())
 
 
-FIGURES: dict[str, Callable[[], Figure]] = {
+FIGURES: "dict[str, Callable[[], Figure]]" = {
     "fig1": numbering,
     "fig2_3": searches,
     "fig4": schematics.draw_drive,
