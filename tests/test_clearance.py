@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dynastar.clearance import FAR, distance_field, inflate, update_window
+from dynastar.clearance import FAR, WIDE, distance_field, inflate, update_window
 from naive import clearance, distances
 
 
@@ -45,7 +45,9 @@ def test_an_updated_window_is_as_if_made_anew(seed):
 
 @pytest.mark.parametrize("radius", [0.0, 0.3, 0.5, 0.51, 0.8, 1.5, 2.0, 3.7])
 @pytest.mark.parametrize("outside", [True, False])
-def test_inflation_is_exact(radius, outside):
+@pytest.mark.parametrize("wide", [0, WIDE])
+def test_inflation_is_exact(radius, outside, wide, monkeypatch):
+    monkeypatch.setattr("dynastar.clearance.WIDE", wide)
     rng = np.random.default_rng(7)
     for _ in range(3):
         blocked = rng.random((14, 11)) < 0.05

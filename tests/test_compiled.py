@@ -74,3 +74,58 @@ def test_what_could_not_be_compiled_is_tried_again(tmp_path, monkeypatch):
     monkeypatch.setattr(compiling, "PARTS", ("no_such_part",))
     assert compiling.prepare() > 0.0
     assert compiling.prepare() > 0.0
+
+
+def test_without_a_home_that_can_be_written_the_kernels_are_kept_with_temporary_files(
+    tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setattr(compiled.tempfile, "gettempdir", lambda: str(tmp_path))
+    monkeypatch.setenv("XDG_CACHE_HOME", "/proc/none")
+    kept = compiled.caches()
+    assert kept.parent == tmp_path
+    assert kept.stat().st_mode & 0o777 == 0o700
+    assert compiled.caches() == kept
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(kept / compiled.digest()))
+    monkeypatch.setattr(compiling, "PARTS", ())
+    compiling.prepare()
+    assert f"into {kept}" in capsys.readouterr().err
+
+
+def test_a_folder_of_another_user_is_not_trusted(tmp_path, monkeypatch):
+    monkeypatch.setattr(compiled.tempfile, "gettempdir", lambda: str(tmp_path))
+    monkeypatch.setenv("XDG_CACHE_HOME", "/proc/none")
+    kept = compiled.caches()
+    kept.chmod(0o777)
+    other = compiled.caches()
+    assert other != kept
+    other.rmdir()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("harm", ["cut", "empty", "noise"])
+def test_damaged_files_in_the_cache_are_compiled_again(tmp_path, harm):
+    run(PLAN, tmp_path)
+    files = sorted((tmp_path / "dynastar").rglob("*.nb?"))
+    assert files
+    for file in files:
+        whole = file.read_bytes()
+        damaged = {"cut": whole[: len(whole) // 2], "empty": b"", "noise": bytes(range(256))}
+        file.write_bytes(damaged[harm])
+    assert run(PLAN, tmp_path).stderr == ""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("home", [{}, {"HOME": "/proc/none"}])
+def test_the_command_line_works_for_a_user_without_a_name_and_a_home(home, tmp_path):
+    nameless = "import pwd; pwd.getpwuid = lambda number: {}[number]; "
+    drawn = tmp_path / "map.txt"
+    drawn.write_text("....\n....\n")
+    numbers = ["--start", "0.5", "0.5", "--goal", "3.5", "0.5", "--planner", "jump"]
+    command = [sys.executable, "-c", nameless + MAIN, "plan", str(drawn), *numbers]
+    dropped = ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "HOME")
+    env = {key: value for key, value in os.environ.items() if key not in dropped}
+    env |= home | {"TMPDIR": str(tmp_path)}
+    done = subprocess.run(command, env=env, capture_output=True, text=True)
+    assert (done.returncode, done.stdout[:7]) == (0, "planner"), done.stderr
+    assert "no home can be written" in done.stderr
+    assert len(done.stderr.splitlines()) == 2, done.stderr

@@ -10,6 +10,7 @@ Mask = npt.NDArray[np.bool_]
 Field = npt.NDArray[np.float32]
 
 CHAMFER = 1.0 / 1.02  # the chamfer overestimates by less than 2 %
+WIDE = 24  # cells, up to which inflating by a mask is the faster way
 FAR = 1e9  # m, the clearance where nothing is blocked
 
 
@@ -75,6 +76,8 @@ def inflate(blocked: npt.ArrayLike, radius_cells: float, outside_blocked: bool =
     reach = math.ceil(radius_cells + 0.5) - 1  # cells with (reach - 0.5) < radius
     if radius_cells <= 0.0 or reach < 1:
         return mask.copy()
+    if reach > WIDE:
+        return _to_squares(mask, outside_blocked) < radius_cells
     away = np.maximum(np.abs(np.arange(-reach, reach + 1)) - 0.5, 0.0)
     disc = np.hypot(away[:, None], away[None, :]) < radius_cells
     grown = cv2.dilate(
@@ -84,3 +87,17 @@ def inflate(blocked: npt.ArrayLike, radius_cells: float, outside_blocked: bool =
         borderValue=int(outside_blocked),
     )
     return grown.view(np.bool_)
+
+
+def _to_squares(blocked: Mask, outside_blocked: bool) -> Field:
+    """Cells from every cell's centre to the square of the nearest blocked cell.
+
+    The square's nearest point is its centre, a corner or the middle of an edge, so that a distance
+    field of half the resolution is exact.
+    """
+    padded = np.pad(blocked, 1, constant_values=outside_blocked)
+    points = np.zeros((2 * padded.shape[0] + 1, 2 * padded.shape[1] + 1), dtype=bool)
+    for i in range(3):
+        for j in range(3):
+            points[i : i + 2 * padded.shape[0] : 2, j : j + 2 * padded.shape[1] : 2] |= padded
+    return distance_field(points, 0.5)[3:-3:2, 3:-3:2]

@@ -3,11 +3,18 @@
 numba notices edits only in the file that a kernel stands in, not in the files it imports from, so
 a shared cache would go stale; here all kernels' sources together name the folder. So it does, too,
 for a program that has imported numba before.
+
+A home that is missing or cannot be written, as in a container, is replaced by a folder of the
+user's own beside other temporary files.
 """
 
 import hashlib
 import os
+import pickle
 import shutil
+import stat
+import tempfile
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +23,11 @@ ROOM = "dynastar"  # in the user's cache
 
 def caches() -> Path:
     """The folder that holds the compiled kernels of all versions."""
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / ROOM
+    try:
+        usual = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / ROOM
+    except RuntimeError:  # a user without a home
+        return _temporary()
+    return usual if _can_be_written(usual) else _temporary()
 
 
 def folder() -> Path:
@@ -42,16 +53,79 @@ def clear() -> int:
     return size
 
 
+def is_temporary() -> bool:
+    """Whether the kernels are kept with temporary files, as there is no home to write to."""
+    kept = folder().parent
+    return kept == caches() and kept.name != ROOM
+
+
+def _can_be_written(folder: Path) -> bool:
+    """Whether a folder is there, or can be made, and can be written."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    return os.access(folder, os.W_OK | os.X_OK)
+
+
+def _temporary() -> Path:
+    """A folder that is this user's alone, the same one each time: what is in it will be run."""
+    user = os.geteuid() if hasattr(os, "geteuid") else os.getpid()
+    folder = Path(tempfile.gettempdir()) / f"{ROOM}-{user}"
+    try:
+        folder.mkdir(mode=0o700, exist_ok=True)
+        found = folder.lstat()
+        own = stat.S_ISDIR(found.st_mode) and not found.st_mode & 0o022
+        if own and (not hasattr(os, "geteuid") or found.st_uid == user):
+            return folder
+    except OSError:
+        pass
+    return Path(tempfile.mkdtemp(prefix=f"{ROOM}-"))
+
+
 if "NUMBA_CACHE_DIR" not in os.environ:
     os.environ["NUMBA_CACHE_DIR"] = str(caches() / digest())
 
 import llvmlite.ir as ir  # noqa: E402 (numba reads the variable when it is imported)
-from numba import config, njit, types  # noqa: E402
+import numba  # noqa: E402
+from numba import config, types  # noqa: E402
+from numba.core.caching import IndexDataCacheFile  # noqa: E402
 from numba.extending import intrinsic  # noqa: E402
 
 config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
 
 __all__ = ["caches", "clear", "digest", "folder", "leading_zeros", "njit", "trailing_zeros"]
+
+DAMAGED = (EOFError, pickle.UnpicklingError, ValueError, TypeError, LookupError, AttributeError)
+
+
+class _CacheFile(IndexDataCacheFile):  # type: ignore[misc]
+    """A kernel's files in the cache; what is cut off or damaged is compiled again."""
+
+    def _load_index(self) -> dict[Any, str]:
+        try:
+            found: dict[Any, str] = super()._load_index()
+        except DAMAGED:
+            return {}
+        return found
+
+    def _load_data(self, name: str) -> Any:
+        try:
+            return super()._load_data(name)
+        except DAMAGED as error:
+            raise OSError(f"{name}: {error}") from error
+
+
+def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """numba's decorator of this name, with a cache that survives damaged files."""
+
+    def compiled(function: Callable[..., Any]) -> Any:
+        kernel = numba.njit(**options)(function)
+        if options.get("cache"):
+            kernel._cache._cache_file.__class__ = _CacheFile
+        return kernel
+
+    return compiled
 
 
 @intrinsic

@@ -57,6 +57,9 @@ class GridFrame(NamedTuple):
 
 
 _UNIT_FRAME = GridFrame(1.0)
+MOST_DRAWN = 2**26  # cells of a map drawn in text
+_MEANING = np.full(128, FREE, dtype=np.int8)  # of a mark
+_MEANING[[ord("#"), ord("?")]] = OCCUPIED, UNKNOWN
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +123,11 @@ class OccupancyGrid:
     def from_text(
         text: str | Sequence[str], resolution: float = 1.0, x: float = 0.0, y: float = 0.0
     ) -> "OccupancyGrid":
-        """A grid drawn as text, top row first: ``#`` occupied, ``.``, space free, ``?`` unknown."""
+        """A grid drawn as text, top row first: ``#`` occupied, ``.``, space free, ``?`` unknown.
+
+        Short lines are free at their ends. Raises MapError for other marks, and for more than
+        ``MOST_DRAWN`` cells.
+        """
         lines = text.strip("\n").split("\n") if isinstance(text, str) else list(text)
         legal = set("#. ?")
         for number, line in enumerate(lines, 1):
@@ -131,10 +138,14 @@ class OccupancyGrid:
                     "expected '#', '.', ' ' or '?'"
                 )
         width = max(map(len, lines), default=0)
+        if len(lines) * width > MOST_DRAWN:
+            raise MapError(
+                f"a drawn map of {len(lines)} lines, the longest of {width} marks, has more than "
+                f"{MOST_DRAWN} cells: expected an image (.yaml with .pgm or .png) instead"
+            )
         drawn = "".join(line.ljust(width) for line in reversed(lines)).encode("ascii")
         marks = np.frombuffer(drawn, dtype=np.uint8).reshape(len(lines), width)
-        values = np.select([marks == ord("#"), marks == ord("?")], [OCCUPIED, UNKNOWN], FREE)
-        return OccupancyGrid(values.astype(np.int8), GridFrame(resolution, x, y))
+        return OccupancyGrid(_MEANING[marks], GridFrame(resolution, x, y))
 
     @property
     def rows(self) -> int:

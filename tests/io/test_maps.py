@@ -78,10 +78,10 @@ def test_an_image_needs_its_own_yaml_beside_it(tmp_path):
         (np.zeros((2, 2)), "float64"),
         (np.zeros((2, 2), np.uint8), "uint8"),
         (np.zeros(4, np.int8), "shape"),
-        (np.zeros((0, 4), np.int8), "1 or more"),
+        (np.zeros((0, 4), np.int8), "both > 0"),
         (np.full((2, 2), 101, np.int8), "-1 to 100"),
         (np.array([[None]]), "object"),
-        (np.zeros((1, 1), [("a", "i1")]), "expected bool"),
+        (np.zeros((1, 1), [("a", "i1")]), "no array of numbers"),
     ],
 )
 def test_arrays_of_the_wrong_kind_are_refused(tmp_path, array, message):
@@ -123,9 +123,9 @@ def test_no_damage_to_an_array_gives_anything_but_a_map_or_a_map_error(tmp_path)
     [
         (b"#.x\n", "line 1, column 3 of a drawn map is 'x'"),
         (b"\xff\xfe#.", "not a text file"),
-        (b"\n\n", "1 or more"),
+        (b"\n\n", "both > 0"),
         (b"", "empty"),
-        (b"." * 20000 + b"\n." * 20000, "at most"),
+        (b"." * 20000 + b"\n." * 20000, "more than"),
     ],
 )
 def test_a_wrong_drawing_says_what_is_wrong(tmp_path, text, message):

@@ -36,7 +36,8 @@ def prepare() -> float:
         mark.parent.mkdir(parents=True, exist_ok=True)
         mark.touch()
     seconds = time.perf_counter() - began
-    print(f"compiled in {seconds:.0f} s", file=sys.stderr)
+    where = f", into {compiled.folder()}: no home can be written" if compiled.is_temporary() else ""
+    print(f"compiled in {seconds:.0f} s{where}", file=sys.stderr)
     return seconds
 
 

@@ -11,12 +11,18 @@ def check_file(option: str, name: str | Path | None) -> Path | None:
     if name is None or str(name) == "-":
         return None
     file = Path(name)
-    folder = file.absolute().parent
+    try:
+        folder = (file.resolve() if file.is_symlink() else file.absolute()).parent
+        known = file.exists()
+    except OSError as error:
+        raise InputError(f"{option} {name!s:.200}: {error.strerror}; name another") from None
     if not folder.is_dir():
         raise InputError(f"{option} {name}: its folder is not there; make it first")
     if file.is_dir():
         raise InputError(f"{option} {name}: that is a folder; name a file")
-    if not os.access(folder, os.W_OK) or (file.exists() and not os.access(file, os.W_OK)):
+    if known and not file.is_file():
+        raise InputError(f"{option} {name}: is no regular file; name another")
+    if not os.access(folder, os.W_OK) or (known and not os.access(file, os.W_OK)):
         raise InputError(f"{option} {name}: cannot be written; name another")
     return file
 

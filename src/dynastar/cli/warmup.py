@@ -10,7 +10,8 @@ from dynastar.cli.compiling import prepare
 def execute(arguments: argparse.Namespace) -> int:
     """Compiles what the cache lacks, or deletes the cache."""
     if arguments.clear:
-        print(f"{compiled.clear() / 1e6:.0f} MB deleted from {compiled.caches()}", file=sys.stderr)
+        kept = compiled.caches()
+        print(f"{compiled.clear() / 1e6:.0f} MB deleted from {kept}", file=sys.stderr)
     elif prepare() == 0.0:
         print(f"all kernels of this version are in {compiled.folder()}", file=sys.stderr)
     return 0

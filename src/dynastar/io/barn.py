@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from dynastar.errors import DataError
 from dynastar.io.files import read_bytes
+from dynastar.io.npy import read_npy
 
 ARCHIVE = "worlds.tar.xz"
 START, GOAL = (-2.25, 3.0, math.pi / 2), (-2.25, 13.0)
@@ -100,10 +101,10 @@ def official_length(folder: Path, number: int) -> float:
     path = folder / "path_files" / f"path_{number}.npy"
     data = read_bytes(path, MAX_PATH_BYTES, DataError)
     try:
-        cells = np.load(io.BytesIO(data), allow_pickle=False)
-    except (ValueError, EOFError, OSError) as error:
-        raise DataError(f"{path}: this is no NumPy array ({error!s:.80})") from None
-    if cells.ndim != 2 or cells.shape[1] != 2 or not np.issubdtype(cells.dtype, np.number):
+        cells = read_npy(data)
+    except ValueError as error:
+        raise DataError(f"{path}: {error}") from None
+    if cells.ndim != 2 or cells.shape[1] != 2:
         raise DataError(f"{path}: has shape {cells.shape}, expected (n, 2) of row and column")
     line = np.vstack([START[:2], 0.15 * cells + (-4.575, 5.075), GOAL])
     length = float(np.hypot(*np.diff(line, axis=0).T).sum())

@@ -21,7 +21,8 @@ from dynastar.io.files import read_bytes, written_aside
 from dynastar.path import Trajectory
 
 VERSION = 1
-MAX_EPISODE_BYTES = 2**31  # unpacked
+MAX_EPISODE_BYTES = 2**29  # unpacked
+MAX_HEADER_BYTES = 2**24
 
 Arrays = dict[str, npt.NDArray[Any]]
 
@@ -50,6 +51,7 @@ _SHAPES: dict[str, tuple[Any, ...]] = {
 _TEXTS = ("states", "limits")
 _OPTIONAL = ("limits",)  # was not recorded before
 _MASKS = ("keepout", "speed_limit")
+_KNOWN = {*_SHAPES, *_MASKS}
 
 
 def save_episode(episode: Episode, path: str | Path) -> None:
@@ -87,11 +89,12 @@ def load_episode(path: str | Path) -> Episode:
     data = read_bytes(path, MAX_EPISODE_BYTES, EpisodeError)
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            if sum(member.file_size for member in archive.infolist()) > MAX_EPISODE_BYTES:
-                raise EpisodeError(f"unpacked, it has more than {MAX_EPISODE_BYTES} bytes")
+            _check_sizes({member.filename: member.file_size for member in archive.infolist()})
         with np.load(io.BytesIO(data), allow_pickle=False) as members:
-            arrays = {name: members[name] for name in members.files}
-        header = _header(arrays)
+            if "header" not in members.files:
+                raise EpisodeError("the episode lacks 'header'")
+            header = _header(members["header"])
+            arrays = {name: members[name] for name in members.files if name in _KNOWN}
         _check(arrays)
         return _episode(header, arrays)
     except (EpisodeError, MapError) as error:
@@ -133,8 +136,16 @@ def _arrays(episode: Episode) -> Arrays:
     return arrays
 
 
-def _header(arrays: Arrays) -> dict[str, Any]:
-    header = json.loads(arrays.pop("header").tobytes().decode("utf-8"))
+def _check_sizes(sizes: dict[str, int]) -> None:
+    """Raises EpisodeError if what the members hold, in bytes, is more than is read."""
+    if sizes.get("header.npy", 0) > MAX_HEADER_BYTES:
+        raise EpisodeError(f"unpacked, its header has more than {MAX_HEADER_BYTES} bytes")
+    if sum(sizes.get(f"{name}.npy", 0) for name in _KNOWN) > MAX_EPISODE_BYTES:
+        raise EpisodeError(f"unpacked, it has more than {MAX_EPISODE_BYTES} bytes")
+
+
+def _header(packed: npt.NDArray[Any]) -> dict[str, Any]:
+    header = json.loads(packed.tobytes().decode("utf-8"))
     if not isinstance(header, dict) or header.get("format") != "dynastar episode":
         raise EpisodeError("this is not an episode of dynastar")
     if header.get("version") != VERSION:

@@ -16,7 +16,9 @@ from dynastar.errors import InputError, MapError
 MAX_CELLS = 16384 * 16384  # of a map, 268 million; checked before anything is decoded
 MAX_BYTES = 4 * MAX_CELLS  # of a map's image
 MAX_TEXT_BYTES = 128 * 2**20  # of a map drawn in text
-MAX_TABLE_BYTES = 2**18  # of a YAML or TOML file
+MAX_TABLE_BYTES = 2**18  # of a TOML file
+MAX_HEADER_BYTES = 2**15  # of a map's YAML file
+MAX_ROWS_BYTES = 2**22  # of a benchmark's list of missions
 
 
 def read_bytes(path: Path, limit: int, error: type[InputError]) -> bytes:
@@ -49,10 +51,17 @@ def check_size(rows: int, columns: int, path: Path) -> None:
 def written_aside(path: str | Path, error: type[InputError] = InputError) -> Iterator[Path]:
     """A path beside ``path``, of the same suffix, to write to: renamed to ``path`` at the end.
 
+    A link is followed; what is there and no regular file is refused.
     On any exception it is deleted instead. Folders that are missing are made. Raises ``error``
     where the system refuses.
     """
     path = Path(path)
+    try:
+        path = path.resolve() if path.is_symlink() else path
+        if path.exists() and not path.is_file():
+            raise error(f"{path}: is no regular file; name another")
+    except OSError as trouble:
+        raise error(f"{path!s:.200}: cannot be written ({_reason(trouble)})") from None
     aside = path.with_name(f".{path.stem}.{secrets.token_hex(4)}.aside{path.suffix}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

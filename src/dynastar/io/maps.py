@@ -1,6 +1,5 @@
 """Maps by file name: what the suffix says decides how a file is read and written."""
 
-import io
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
@@ -9,9 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.errors import MapError
-from dynastar.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
+from dynastar.grid import FREE, MOST_DRAWN, OCCUPIED, UNKNOWN, OccupancyGrid
 from dynastar.io.files import MAX_BYTES, MAX_TEXT_BYTES, check_size, read_bytes, written_aside
 from dynastar.io.movingai import check_plain, load_movingai_map, save_movingai_map
+from dynastar.io.npy import read_npy
 from dynastar.io.ros_map import load_ros_map, read_header, save_ros_map
 
 T = TypeVar("T")
@@ -54,33 +54,20 @@ def _load_image(path: Path) -> OccupancyGrid:
 def _load_array(path: Path) -> OccupancyGrid:
     data = read_bytes(path, MAX_BYTES, MapError)
     try:
-        stream = io.BytesIO(data)
-        version = np.lib.format.read_magic(stream)
-        read = {(1, 0): np.lib.format.read_array_header_1_0}.get(
-            version, np.lib.format.read_array_header_2_0
-        )
-        shape, _, dtype = read(stream)
-    except Exception as error:  # numpy's reader raises many kinds for damage
-        raise MapError(f"{path}: this is no NumPy array ({error!s:.80})") from None
-    if dtype not in (np.bool_, np.int8):
-        raise MapError(
-            f"{path}: the array is of {dtype}, expected bool (occupied) or int8 (-1..100)"
-        )
-    if len(shape) != 2:
-        raise MapError(f"{path}: the array has shape {shape!s:.60}, expected (rows, columns)")
-    check_size(*shape, path)
-    if len(data) - stream.tell() != shape[0] * shape[1]:
-        raise MapError(
-            f"{path}: {len(data) - stream.tell()} bytes follow the header, "
-            f"expected {shape[0]} x {shape[1]}"
-        )
-    try:
-        values = np.load(io.BytesIO(data), allow_pickle=False)
-        if dtype == np.bool_:  # a byte of 2 would be a bool that is neither
+        values = read_npy(data)
+        if values.dtype not in (np.bool_, np.int8):
+            raise MapError(
+                f"the array is of {values.dtype}, expected bool (occupied) or int8 (-1..100)"
+            )
+        if values.ndim != 2:
+            raise MapError(f"the array has shape {values.shape!s:.60}, expected (rows, columns)")
+        if values.dtype == np.bool_:  # a byte of 2 would be a bool that is neither
             values = values.view(np.uint8) != 0
-        return OccupancyGrid(values)
+        grid = OccupancyGrid(values)
     except (MapError, ValueError) as error:
         raise MapError(f"{path}: {error}") from None
+    check_size(grid.rows, grid.columns, path)
+    return grid
 
 
 def _save_array(grid: OccupancyGrid, path: Path) -> None:
@@ -95,7 +82,6 @@ def _load_text(path: Path) -> OccupancyGrid:
     except UnicodeDecodeError:
         raise MapError(f"{path}: this is not a text file") from None
     lines = text.replace("\r\n", "\n").strip("\n").split("\n")
-    check_size(len(lines), max(map(len, lines)), path)
     try:
         return OccupancyGrid.from_text(lines)
     except MapError as error:
@@ -106,6 +92,8 @@ def _save_text(grid: OccupancyGrid, path: Path) -> None:
     check_plain(grid, path)
     if not np.isin(grid.values, (FREE, OCCUPIED, UNKNOWN)).all():
         raise MapError(f"{path}: a drawn map holds free, occupied, unknown only, save as .yaml")
+    if grid.values.size > MOST_DRAWN:
+        raise MapError(f"{path}: a drawn map has at most {MOST_DRAWN} cells, save as .yaml")
     marks: npt.NDArray[np.uint8] = np.zeros(256, dtype=np.uint8)
     marks[[FREE, OCCUPIED, UNKNOWN]] = list(b".#?")
     lines = [marks[row.view(np.uint8)].tobytes() for row in grid.values[::-1]]

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from dynastar.config import Field, checked
 from dynastar.errors import ConfigError, MapError, OutOfMap
 from dynastar.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
-from dynastar.io.files import MAX_BYTES, MAX_TEXT_BYTES, check_size, read_bytes, written_aside
+from dynastar.io.files import MAX_BYTES, MAX_ROWS_BYTES, check_size, read_bytes, written_aside
 
 PASSABLE, BLOCKED = b".GS", b"@OTW"
 _HEADER = re.compile(
@@ -102,7 +102,7 @@ def load_scenarios(path: str | Path) -> list[MovingAIScenario]:
     """The rows of a ``.scen`` file (version 1); raises MapError with the line that is wrong."""
     path = Path(path)
     try:
-        lines = read_bytes(path, MAX_TEXT_BYTES, MapError).decode("utf-8").splitlines()
+        lines = read_bytes(path, MAX_ROWS_BYTES, MapError).decode("utf-8").splitlines()
     except UnicodeDecodeError:
         raise MapError(f"{path}: this is not a text file") from None
     if lines[0].split() not in (["version", "1"], ["version", "1.0"]):

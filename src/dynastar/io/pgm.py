@@ -10,6 +10,8 @@ import numpy.typing as npt
 from dynastar.errors import MapError
 from dynastar.io.files import MAX_TEXT_BYTES, check_size
 
+MOST_HEADER = 2**16  # bytes, with comments
+
 _GAP = rb"(?:\s|#[^\r\n]*[\r\n])+"
 _HEADER = re.compile(rb"P([25])" + _GAP.join([b"", *3 * [rb"(\d{1,9})"]]) + rb"\s")
 
@@ -19,7 +21,7 @@ def read_pgm(data: bytes, path: Path) -> tuple[npt.NDArray[np.unsignedinteger], 
 
     ``path`` is for the messages. Raises MapError if header and content disagree.
     """
-    header = _HEADER.match(data)
+    header = _HEADER.match(data, 0, MOST_HEADER)
     if header is None:
         raise MapError(
             f"{path}: the PGM header is broken, expected P2 or P5, width, height, maximum"

@@ -13,7 +13,7 @@ from PIL import Image
 from PIL.PngImagePlugin import PngImageFile
 
 from dynastar.errors import MapError
-from dynastar.io.files import check_size
+from dynastar.io.files import MAX_CELLS, check_size
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _CHANNELS = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}  # by colour type
@@ -27,6 +27,7 @@ _ADAM7 = (
     (0, 1, 1, 2),
 )
 _PIECE = 2**20
+MAX_DECODED = MAX_CELLS  # bytes of a decoded image: a byte for each cell of the largest map
 
 
 def read_png(data: bytes, path: Path) -> npt.NDArray[np.unsignedinteger]:
@@ -39,6 +40,12 @@ def read_png(data: bytes, path: Path) -> npt.NDArray[np.unsignedinteger]:
         raise MapError(f"{path}: the PNG header is broken or cut off")
     columns, rows = struct.unpack(">II", data[16:24])
     check_size(rows, columns, path)
+    depth, colour = data[24:26]
+    if (rows * columns * depth * _CHANNELS.get(colour, 1)) // 8 > MAX_DECODED:
+        raise MapError(
+            f"{path}: {columns} x {rows} pixels have more than {MAX_DECODED} bytes: "
+            "expected grey of 8 bits"
+        )
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         try:

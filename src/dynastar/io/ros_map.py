@@ -19,7 +19,7 @@ import yaml
 from dynastar.config import Field, checked, nearest
 from dynastar.errors import ConfigError, MapError
 from dynastar.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyGrid
-from dynastar.io.files import MAX_BYTES, MAX_TABLE_BYTES, read_bytes, written_aside
+from dynastar.io.files import MAX_BYTES, MAX_HEADER_BYTES, read_bytes, written_aside
 from dynastar.io.pgm import read_pgm, write_pgm
 from dynastar.io.png import SIGNATURE, read_png, write_png
 from dynastar.io.yaml_table import read_yaml
@@ -58,7 +58,7 @@ def load_ros_map(yaml_path: str | Path) -> OccupancyGrid:
 
 def read_header(path: Path) -> MapHeader:
     """The checked keys of a map's YAML file; raises MapError."""
-    table = read_yaml(read_bytes(path, MAX_TABLE_BYTES, MapError), path)
+    table = read_yaml(read_bytes(path, MAX_HEADER_BYTES, MapError), path)
     known = {key: table[key] for key in MapHeader._fields if key in table}
     others = [key for key in table if key not in known]
     for key in MapHeader._fields:

@@ -24,6 +24,13 @@ from dynastar.navigator import Preset
 from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot
 from dynastar.simulation.scenario import Noise, Scenario
 
+_STRING = (  # or what is left of one that has no end
+    r'"""(?:\\.|[^\\])*?(?:"""|\Z)' r"|'{3}.*?(?:'{3}|\Z)" r'|"(?:\\.|[^"\\\n])*+"?' r"|'[^'\n]*+'?"
+)
+_PART = rf"(?>[\w-]+|{_STRING})[ \t]*+"
+_DEEP = rf"{_PART}(?:\.[ \t]*{_PART}){{32}}"
+_TOKEN = re.compile(rf"(?P<deep>{_DEEP})|{_STRING}|#[^\n]*|[\w-]+|.", re.DOTALL)
+
 DATA_VARIABLE = "DYNASTAR_DATA"
 
 
@@ -86,7 +93,10 @@ def load_scenario(path: str | Path) -> Scenario:
     path = Path(path)
     data = read_bytes(path, MAX_TABLE_BYTES, ScenarioError)
     try:
-        source = tomllib.loads(data.decode("utf-8"))
+        text = data.decode("utf-8")
+        if any(token.lastgroup for token in _TOKEN.finditer(text)):
+            raise ValueError("a key of more than 32 parts")  # tomllib takes their square
+        source = tomllib.loads(text)
     except UnicodeDecodeError:
         raise ScenarioError(f"{path}: this is not a text file") from None
     except RecursionError:

@@ -32,6 +32,8 @@ from dynastar.planning.smoothing import smooth
 Mask = npt.NDArray[np.bool_]
 Point = tuple[float, float]
 
+MOST_RADIUS = 100.0  # m
+
 
 @self_checking
 class PlannerConfig(NamedTuple):
@@ -94,8 +96,8 @@ class GridPlanner:
                 f"a map is of type {type(grid).__name__}: expected an OccupancyGrid, as "
                 "OccupancyGrid(array, 0.05) makes of an array with cells of 5 cm"
             )
-        if not (math.isfinite(radius) and radius >= 0.0):
-            raise ConfigError(f"a planning radius is {radius}: expected 0 m or more")
+        if not 0.0 <= radius <= MOST_RADIUS:
+            raise ConfigError(f"a planning radius is {radius:g} m: expected 0 to {MOST_RADIUS:g} m")
         choose(config.planner, ALGORITHMS, "planner")
         self.grid = grid
         self.radius = float(radius)
