@@ -93,3 +93,36 @@ def test_the_robot_crosses_real_maps(
     assert scenario.movers
     check_lanes(scenario)
     arrives(scenario)
+
+
+FEATURES = sorted((EXAMPLES / "features").glob("*.toml"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("file", FEATURES, ids=lambda path: path.stem)
+def test_each_feature_of_scenarios_has_an_example_that_arrives(file: Path) -> None:
+    scenario = load_scenario(file)
+    episode = run(scenario)
+    result = measure(episode)
+    contacts = result.contacts_moving, result.contacts_resting
+    assert (result.outcome, *contacts) == ("arrived", 0, 0), result.reason
+    assert result.goals_reached == len(scenario.goals)
+    poses, speeds = episode.trajectory.poses, episode.trajectory.twists[:, 0]
+    cells = tuple(np.array([scenario.grid.world_to_cell(x, y) for x, y, _ in poses]).T)
+    if scenario.grid.keepout is not None:
+        assert scenario.grid.keepout.any()
+        assert not scenario.grid.keepout[cells].any()
+    if scenario.grid.speed_limit is not None:
+        limits = scenario.grid.speed_limit[cells]
+        assert np.isfinite(limits).any()
+        assert (speeds <= limits + 0.02).all()
+    if scenario.unknown == "free" and scenario.grid.keepout is None:
+        assert scenario.grid.unknown[cells].any()
+
+
+def test_the_hall_is_what_its_script_draws() -> None:
+    drawn = runpy.run_path(str(EXAMPLES / "features" / "draw_hall.py"))["draw"]()
+    for name, grid in drawn.items():
+        stored = load_map(EXAMPLES / "features" / f"{name}.yaml")
+        assert np.array_equal(grid.values, stored.values)
+        assert grid.frame == stored.frame

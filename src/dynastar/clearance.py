@@ -77,7 +77,7 @@ def inflate(blocked: npt.ArrayLike, radius_cells: float, outside_blocked: bool =
     if radius_cells <= 0.0 or reach < 1:
         return mask.copy()
     if reach > WIDE:
-        return _to_squares(mask, outside_blocked) < radius_cells
+        return distance_to_squares(mask, outside_blocked) < radius_cells
     away = np.maximum(np.abs(np.arange(-reach, reach + 1)) - 0.5, 0.0)
     disc = np.hypot(away[:, None], away[None, :]) < radius_cells
     grown = cv2.dilate(
@@ -89,7 +89,7 @@ def inflate(blocked: npt.ArrayLike, radius_cells: float, outside_blocked: bool =
     return grown.view(np.bool_)
 
 
-def _to_squares(blocked: Mask, outside_blocked: bool) -> Field:
+def distance_to_squares(blocked: Mask, outside_blocked: bool = True) -> Field:
     """Cells from every cell's centre to the square of the nearest blocked cell.
 
     The square's nearest point is its centre, a corner or the middle of an edge, so that a distance

@@ -186,13 +186,23 @@ def _cast_number(hint: Any, value: Any, where: str, field: Field) -> float:
     if not _is_number(value):
         raise ConfigError(f"'{where}' is {shown(value)}: expected a number {legal}")
     if not field.low <= value <= field.high:  # NaN is in no range
-        raise ConfigError(f"'{where}' is {shown(value)}{unit}: legal is {legal}")
+        raise ConfigError(
+            f"'{where}' is {shown(value)}{unit}: legal is {legal}{_as_radians(value, field)}"
+        )
     if hint is int and not (isinstance(value, Integral) or float(value).is_integer()):
         raise ConfigError(f"'{where}' is {shown(value)}: expected a whole number {legal}")
     try:
         return hint(value)
     except OverflowError:
         raise ConfigError(f"'{where}' is {shown(value)}: legal is {legal}") from None
+
+
+def _as_radians(value: Any, field: Field) -> str:
+    """A hint for an angle that must be meant in degrees, else nothing."""
+    radians = math.radians(value) if field.unit == "rad" and abs(value) <= 720.0 else math.nan
+    if not field.low <= radians <= field.high:
+        return ""
+    return f", and {value:g} degrees are {radians:.4f} rad"
 
 
 def _is_number(value: Any) -> bool:

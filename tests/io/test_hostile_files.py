@@ -200,7 +200,9 @@ def seeds(folder):
     save_episode(episode(), folder / "e.npz")
     np.save(folder / "path_1.npy", np.arange(10).reshape(5, 2))
     drawn = b"[map]\nrows = ['....', '....', '..#.']\nresolution = 1.0\norigin = [0.0, 0.0]\n"
-    goals = b"[[goals]]\nx = 2.5\ny = 2.5\nheading = 1.0\n[sensor]\nbeams = 90\nrange_bound = 0.01\n"
+    goals = (
+        b"[[goals]]\nx = 2.5\ny = 2.5\nheading = 1.0\n[sensor]\nbeams = 90\nrange_bound = 0.01\n"
+    )
     things = (
         b"[[obstacles]]\nbox = [3.5, 1.5, 0.2, 0.2]\nyaw = 0.3\n[[movers]]\nradius = 0.2\n"
         b"waypoints = [[0.5, 2.5], [3.5, 2.5]]\nspeed = 0.5\n[[movers]]\nradius = 0.2\n"

@@ -99,7 +99,7 @@ def test_a_way_out_into_a_pocket_is_not_taken():
 
 def test_a_blocked_start_is_left_if_the_robot_has_a_size():
     wall = (1.05, 0.2)
-    with pytest.raises(StartOccupied, match="lies in an obstacle"):
+    with pytest.raises(StartOccupied, match="is in an obstacle"):
         plan(room(), wall, (0.3, 0.2), radius=0.0)
     made = plan(room(), wall, (0.3, 0.2), radius=0.1)
     assert tuple(made.path.points[0]) == wall
@@ -108,7 +108,7 @@ def test_a_blocked_start_is_left_if_the_robot_has_a_size():
         np.pad(np.zeros((9, 9), bool), (0, 40)) | (np.add.outer(np.arange(49), np.arange(49)) > 16),
         0.1,
     )
-    with pytest.raises(StartOccupied, match="no way out"):
+    with pytest.raises(StartOccupied, match="is in an obstacle; the nearest place"):
         plan(filled, (4.0, 4.0), (0.4, 0.4), radius=0.1)
 
 
@@ -119,9 +119,11 @@ def test_errors_have_names_and_say_what_is_wrong():
         plan(room(), (-0.01, 0.2), (0.3, 0.2))
     with pytest.raises(OutOfMap):
         plan(room(), (float("nan"), 0.2), (0.3, 0.2))
-    with pytest.raises(GoalOccupied, match="lies in an obstacle"):
+    with pytest.raises(GoalOccupied, match="is in an obstacle"):
         plan(room(), (0.3, 0.2), (1.05, 0.2), radius=0.1)
-    with pytest.raises(GoalOccupied, match=r"has 0.05 m of clearance where 0.1 m are needed"):
+    with pytest.raises(
+        GoalOccupied, match=r"is 0.05 m from an obstacle, nearer than the radius of 0.1 m"
+    ):
         plan(room(), (0.3, 0.2), (0.95, 0.2), radius=0.1)
     with pytest.raises(NoPath):
         plan(room(), (0.3, 0.3), (1.6, 0.3), radius=0.22)

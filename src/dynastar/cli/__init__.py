@@ -1,4 +1,4 @@
-"""The command line: ``dynastar plan``, ``run``, ``demo``, ``bench``, ``paper`` and ``warmup``.
+"""The command line: ``dynastar plan``, ``run``, ``demo``, ``info`` and so on.
 
 Exit status: 0 done; 1 no path (``plan``) or anything but a contact-free arrival (``run``); 2 bad
 input, with one line on stderr. Nothing heavy is imported before a command needs it.

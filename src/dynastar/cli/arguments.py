@@ -5,9 +5,11 @@ import math
 import re
 
 from dynastar import __version__
+from dynastar.config import nearest
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:  # neither is imported for --help
+    from collections.abc import Iterable
     from pathlib import Path
     from typing import NoReturn
 
@@ -92,9 +94,20 @@ examples:
   dynastar demo --list
   dynastar demo --copy my-examples"""
 
+INFO_EXAMPLES = """\
+examples:
+  dynastar info office.yaml
+  dynastar info examples/office/office.toml --out office.png
+  dynastar info out/office/episode.npz --json"""
+
+SCHEMA_EXAMPLES = """\
+examples:
+  dynastar schema --out scenario.schema.json"""
+
 EXAMPLES = """\
 examples:
   dynastar demo
+  dynastar info office.yaml --out office.png
   dynastar plan office.yaml --start 2 2 --goal 38 23 --radius 0.25
   dynastar run examples/office/office.toml --out out/office
   dynastar bench paper --missions 20
@@ -115,6 +128,40 @@ class OneLineParser(argparse.ArgumentParser):
     def error(self, message: str) -> "NoReturn":
         """Exits with status 2 and ``message``."""
         self.exit(2, f"{self.prog}: {' '.join(message.split())} (see {self.prog} --help)\n")
+
+    def parse_args(self, args=None, namespace=None):  # type: ignore[no-untyped-def]
+        """As the original, but names the option that is nearest to an unknown one."""
+        known, others = self.parse_known_args(args, namespace)
+        if others:
+            command = self._commands().get(getattr(known, "command", ""), self)
+            command.error(_unknown(others[0], command._option_string_actions))
+        return known
+
+    def _commands(self) -> "dict[str, OneLineParser]":
+        return next(
+            (
+                dict(action.choices)
+                for action in self._actions
+                if isinstance(action, argparse._SubParsersAction)
+            ),
+            {},
+        )
+
+    def _check_value(self, action: argparse.Action, value: object) -> None:
+        if action.choices is not None and value not in action.choices:
+            what = (action.metavar or action.dest) if not action.option_strings else "value"
+            words = (
+                f"unknown {str(what).lower()} '{value!s:.80}'{nearest(str(value), action.choices)}"
+            )
+            raise argparse.ArgumentError(action if action.option_strings else None, words)
+
+
+def _unknown(word: str, options: "Iterable[str]") -> str:
+    """What is wrong with an argument that no option takes."""
+    if word.startswith("-"):
+        option = word.partition("=")[0]
+        return f"unknown option '{option:.80}'{nearest(option, options)}"
+    return f"one argument too many: '{word:.80}'"
 
 
 def path(text: str) -> "Path":
@@ -175,6 +222,8 @@ def build_parser() -> argparse.ArgumentParser:
     _add_plan(commands)
     _add_run(commands)
     _add_demo(commands)
+    _add_info(commands)
+    _add_schema(commands)
     _add_bench(commands)
     _add_paper(commands)
     warmup = commands.add_parser(
@@ -253,6 +302,30 @@ def _add_demo(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
     demo.add_argument(
         "--copy", type=path, metavar="DIR", help="copy all of them into a folder instead, to change"
     )
+
+
+def _add_info(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
+    info = commands.add_parser(
+        "info",
+        help="what a map, a scenario or an episode holds",
+        description="Says what a map, a scenario or an episode holds: extent, resolution, how much is "
+        "free, who drives where, what came of it.",
+        epilog=INFO_EXAMPLES,
+    )
+    info.add_argument("file", metavar="FILE", type=path, help="a map, .toml or .npz")
+    info.add_argument("--json", action="store_true", help="JSON on stdout instead of a table")
+    info.add_argument("--out", type=path, metavar="PNG", help="draw it into this picture")
+
+
+def _add_schema(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
+    schema = commands.add_parser(
+        "schema",
+        help="the JSON Schema of scenario files, for editors",
+        description="Prints the JSON Schema of scenario files. Editors complete and check a TOML file by "
+        "it where its first line is `#:schema scenario.schema.json`.",
+        epilog=SCHEMA_EXAMPLES,
+    )
+    schema.add_argument("--out", type=path, metavar="FILE", help="into this file instead")
 
 
 def _add_bench(commands: "argparse._SubParsersAction[OneLineParser]") -> None:

@@ -29,6 +29,8 @@ def check_file(option: str, name: str | Path | None) -> Path | None:
 
 def make_folder(option: str, folder: Path) -> Path:
     """Makes ``folder`` if it is not there; InputError if that cannot be done or it cannot be written."""
+    if folder.is_file():
+        raise InputError(f"{option} {folder}: that is a file; name a folder")
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -5,6 +5,7 @@ from typing import Any
 
 from dynastar import io, planning
 from dynastar.cli.compiling import prepare
+from dynastar.cli.outputs import check_file
 from dynastar.cli.show import as_json, as_table
 from dynastar.config import choose
 from dynastar.errors import InputError
@@ -25,6 +26,7 @@ def execute(arguments: argparse.Namespace) -> int:
         "radius": arguments.radius,
         "unknown": arguments.unknown,
     }
+    picture = check_file("--out", arguments.out)
     prepare()
     planning.plan(grid, start, goal, **settings)  # loads
     plan = planning.plan(grid, start, goal, **settings)
@@ -37,10 +39,10 @@ def execute(arguments: argparse.Namespace) -> int:
         "time_ms": plan.time_ms,
     }
     points = points_to_file(grid, plan.path.points) if in_file else plan.path.points
-    if arguments.out:
+    if picture:
         from dynastar.viewer.figure import draw_plan
 
-        draw_plan(grid, planning.plan(grid, start, goal, explored=True, **settings), arguments.out)
+        draw_plan(grid, planning.plan(grid, start, goal, explored=True, **settings), picture)
     if arguments.json:
         print(as_json({**summary, "path": points}))
     else:

@@ -25,6 +25,8 @@ def load_map(path: str | Path) -> OccupancyGrid:
     have cells of 1 m and their corner at (0, 0). Raises MapError.
     """
     path = Path(path)
+    if path.is_dir():
+        raise MapError(f"{path}: this is a folder, expected a map's file{_maps_in(path)}")
     return _choose(_LOADERS, path)(path)
 
 
@@ -36,6 +38,13 @@ def save_map(grid: OccupancyGrid, path: str | Path) -> None:
     """
     path = Path(path)
     _choose(_SAVERS, path)(grid, path)
+
+
+def _maps_in(folder: Path) -> str:
+    """The maps of a folder, for a message."""
+    names = sorted(name for name in folder.iterdir() if name.suffix.lower() in _LOADERS)
+    listed = [str(name) for name in names if name.suffix.lower() not in (".png", ".pgm", ".npy")]
+    return f", as {', '.join(listed[:3])}" if listed else ""
 
 
 def _load_image(path: Path) -> OccupancyGrid:

@@ -9,7 +9,7 @@ import re
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 from dynastar import simulation
 from dynastar.config import Field, checked, choose, nearest, shown
@@ -20,6 +20,7 @@ from dynastar.grid import OccupancyGrid, Unknown
 from dynastar.io.files import MAX_TABLE_BYTES, read_bytes
 from dynastar.io.maps import load_map
 from dynastar.io.scenario_things import Metres, contains, read_mover, read_obstacle
+from dynastar.masks import SpeedScale, with_keepout, with_speed_limits
 from dynastar.navigator import Preset
 from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot
 from dynastar.simulation.scenario import Noise, Scenario
@@ -44,10 +45,12 @@ class ScenarioTable(NamedTuple):
     goal: Any = None
     name: str = ""
     world: Any = None
+    keepout: Any = None
+    speed_limit: Any = None
     seed: Annotated[int, Field("of all noise", "", 0, 2**63 - 1)] = 0
     time_limit: Annotated[float, Field("when to give up", "s", 0.1, 1e5)] = 300.0
     latency: Annotated[float, Field("a command acts so much later", "s", 0.0, 1.0)] = 0.0
-    unknown: Annotated[Unknown, Field("whether to plan through unknown space")] = "blocked"
+    unknown: Annotated[Unknown, Field("what unknown space is taken for")] = "blocked"
     goal_tolerance: Annotated[float, Field("so near is there", "m", 0.01, 5.0)] = 0.25
     heading_tolerance: Annotated[float, Field("so well aligned is aligned", "rad", 0.01, 3.2)] = 0.1
     preset: Annotated[Preset, Field("the navigator's settings")] = "default"
@@ -63,6 +66,15 @@ class MapTable(NamedTuple):
     rows: tuple[str, ...]
     resolution: Annotated[float, Field("side of a cell", "m", 1e-3, 1e3)] = 1.0
     origin: Annotated[tuple[float, float], Field("lowest corner", "m", -1e6, 1e6)] = (0.0, 0.0)
+
+
+class SpeedLimitTable(NamedTuple):
+    """A mask of speed limits, and what its values mean: see ``masks.SpeedScale``."""
+
+    mask: Any
+    type: Literal["percent", "absolute"] = SpeedScale._field_defaults["type"]
+    base: float = SpeedScale._field_defaults["base"]
+    multiplier: float = SpeedScale._field_defaults["multiplier"]
 
 
 class RobotTable(NamedTuple):
@@ -116,7 +128,7 @@ def read_scenario(source: Mapping[str, Any], folder: Path, name: str) -> Scenari
     start = _place(table.start, "start")
     scenario = Scenario(
         name=table.name or name,
-        grid=_map(table.map, folder, "map"),
+        grid=_masked(table, folder, robot),
         world=None if table.world is None else _map(table.world, folder, "world"),
         robot=robot,
         noise=noise,
@@ -178,6 +190,19 @@ def _map(value: Any, folder: Path, where: str) -> OccupancyGrid:
         return OccupancyGrid.from_text(table.rows, table.resolution, *table.origin)
     except MapError as error:
         raise MapError(f"'{where}.rows': {error}") from None
+
+
+def _masked(table: ScenarioTable, folder: Path, robot: Robot) -> OccupancyGrid:
+    """The map, with keep-out zones and speed limits laid over it."""
+    grid = _map(table.map, folder, "map")
+    if table.keepout is not None:
+        grid = with_keepout(grid, _map(table.keepout, folder, "keepout"))
+    if table.speed_limit is not None:
+        limit = checked(SpeedLimitTable, table.speed_limit, "speed_limit")
+        mask = _map(limit.mask, folder, "speed_limit.mask")
+        scale = SpeedScale(limit.type, limit.base, limit.multiplier)
+        grid = with_speed_limits(grid, mask, robot.limits.v_max, scale)
+    return grid
 
 
 def _expanded(name: str, where: str) -> str:
@@ -256,7 +281,7 @@ def _check_navigator(scenario: Scenario) -> None:
 
 def _check_places(scenario: Scenario) -> None:
     places = [("the start", scenario.start[0], scenario.start[1])]
-    places += [(f"goal {n}", goal.x, goal.y) for n, goal in enumerate(scenario.goals, 1)]
+    places += [(f"goals[{n}]", goal.x, goal.y) for n, goal in enumerate(scenario.goals)]
     for what, x, y in places:
         try:
             cell = scenario.grid.world_to_cell(x, y)

@@ -11,12 +11,21 @@ import numpy.typing as npt
 
 from dynastar.clearance import inflate
 from dynastar.config import Field, choose, self_checking
-from dynastar.errors import ConfigError, GoalOccupied, InputError, NoPath, OutOfMap, StartOccupied
+from dynastar.errors import (
+    ConfigError,
+    GoalOccupied,
+    InputError,
+    NoPath,
+    OutOfMap,
+    PlanningError,
+    StartOccupied,
+)
 from dynastar.geometry import as_point
 from dynastar.grid import OccupancyGrid, Unknown
 from dynastar.path import Path
 from dynastar.planning.any_angle import straighten
 from dynastar.planning.escape import reach_of_escape, ways_out
+from dynastar.planning.explain import explained
 from dynastar.planning.heuristic import HeuristicConfig
 from dynastar.planning.search import (
     ALGORITHMS,
@@ -226,7 +235,12 @@ class GridPlanner:
         return None if at < 0.0 else at * self.grid.resolution
 
     def _find(self, start: Cell, goal: Cell, explored: bool, planner: str) -> SearchResult:
-        return self._search.search(start, goal, planner, self.config.heuristic, explored)
+        try:
+            return self._search.search(start, goal, planner, self.config.heuristic, explored)
+        except NoPath:
+            ends = self.grid.cell_to_world(*start), self.grid.cell_to_world(*goal)
+            words = " to ".join(f"({x:.4g}, {y:.4g})" for x, y in ends)
+            raise NoPath(f"no way leads from {words}") from None
 
     def _find_from_inside(
         self, start: Point, goal: Cell, explored: bool, planner: str
@@ -312,7 +326,10 @@ def plan(
     ConfigError for an unknown planner, and InputError for what is no map or point.
     """
     config = PlannerConfig(planner=planner)
-    return GridPlanner(grid, radius, unknown, config).plan(start, goal, explored)
+    try:
+        return GridPlanner(grid, radius, unknown, config).plan(start, goal, explored)
+    except PlanningError as error:
+        raise explained(error, grid, start, goal, radius, unknown) from None
 
 
 @functools.cache

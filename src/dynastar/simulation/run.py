@@ -4,6 +4,7 @@ import math
 import sys
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from dataclasses import replace
 from time import perf_counter
 from typing import Any, Protocol
 
@@ -12,6 +13,7 @@ from tqdm import tqdm
 from dynastar.episode import Episode
 from dynastar.errors import InputError, PlanningError, ScenarioError
 from dynastar.geometry import Pose2D, Twist
+from dynastar.planning.explain import explained
 from dynastar.robot import stopping_time
 from dynastar.simulation.faults import FaultInjector
 from dynastar.simulation.record import Recorder
@@ -102,8 +104,8 @@ def drive(
             command = Twist(*controller.command(state, scan))
             command_ms = 1e3 * (perf_counter() - began)
             status = controller.status
-            if world.time == 0.0 and isinstance(status.error, InputError):
-                raise status.error
+            if world.time == 0.0 and status.error is not None:
+                status = _explained(status, scenario)
             recorder.tick(command, command_ms, status)
             ending = referee.ended(world, status)
             if ending is None:
@@ -116,6 +118,21 @@ def drive(
     if outcome == "contact":
         recorder.contact(command, reason)
     return recorder.episode(outcome, reason, config, seed)
+
+
+def _explained(status: Any, scenario: Scenario) -> Any:
+    """The first tick's status, with what is wrong with start, goal or map; raises an InputError."""
+    from dynastar.navigator import Status
+
+    x, y, _ = scenario.start
+    goal = scenario.goals[0]
+    radius = scenario.robot.footprint.inscribed
+    error = explained(
+        status.error, scenario.grid, (x, y), (goal.x, goal.y), radius, scenario.unknown
+    )
+    if isinstance(error, InputError):
+        raise error
+    return replace(status, reason=str(error)) if isinstance(status, Status) else status
 
 
 def effective_config(scenario: Scenario) -> Any:

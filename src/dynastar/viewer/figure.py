@@ -23,6 +23,7 @@ from dynastar.viewer.view import View, known_view, mission_view
 
 if TYPE_CHECKING:
     from dynastar.planning import Plan
+    from dynastar.simulation import Scenario
 
 LEFT, RIGHT, AXIS, LINE = 0.62, 0.95, 0.42, 0.15  # inches beside and below the map, of a line
 LEGEND_ROW, LEGEND_COLUMN, LETTERS = 0.19, 2.1, 15.5  # inches, inches, letters an inch
@@ -71,6 +72,34 @@ def draw_plan(
     detail = f"{plan.path.length:.2f} m · {turns} · {plan.expanded} cells expanded"
     words = (f"Path planned by {plan.planner}", f"{detail} · {plan.time_ms:.1f} ms")
     _lay_out(figure, axes, view, width, words, entries)
+    save(figure, path, dpi)
+
+
+def draw_world(
+    grid: OccupancyGrid,
+    path: str | Path,
+    name: str,
+    scenario: "Scenario | None" = None,
+    width: float = 9.0,
+    dpi: int = 160,
+) -> None:
+    """Draws a map under a ``name``, and what a ``scenario`` puts into it: nothing is driven.
+
+    ``width`` is in inches; the suffix of ``path`` (.png, .svg, .pdf) says the format. Raises
+    InputError for another suffix.
+    """
+    view = known_view(grid)
+    figure, axes = _sheet()
+    entries = draw_map(grid, axes, view)
+    if scenario is not None:
+        entries += layers.show_obstacles(axes, scenario.obstacles)
+        entries += layers.show_tracks(axes, scenario.movers)
+        ends = [scenario.start[:2], *((goal.x, goal.y) for goal in scenario.goals)]
+        for number, end in enumerate(ends):
+            numbered = f"G{number - 1}" if len(ends) > 2 else "G"
+            layers.mark(axes, np.array(end), np.array([0.0, 1.0]), numbered if number else "S")
+    size = f"{grid.columns} x {grid.rows} cells of {grid.resolution:g} m"
+    _lay_out(figure, axes, view, width, (name, f"{size} · {grid.extent()}"), entries)
     save(figure, path, dpi)
 
 

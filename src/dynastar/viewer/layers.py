@@ -1,7 +1,7 @@
 """The layers of a picture, each drawn into an Axes in metres; each returns its legend entries."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +18,9 @@ from dynastar.episode import Episode, PlanRecord
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.viewer import palette, scene
 from dynastar.viewer.view import LARGEST_IMAGE, View, averaged_down, map_image
+
+if TYPE_CHECKING:
+    from dynastar.simulation.scenario import Mover
 
 Floats = npt.NDArray[np.float64]
 Style = dict[str, Any]  # what matplotlib's artists take by name
@@ -121,6 +124,17 @@ def _number(axes: Axes, place: Floats, way: Floats, number: str) -> None:
         zorder=9,
         annotation_clip=True,
     )
+
+
+def show_tracks(axes: Axes, movers: "Sequence[Mover]") -> list[Artist]:
+    """Where movers begin, as discs, and the ways they take."""
+    if not movers:
+        return []
+    style: Style = {"color": palette.MOVER, "linewidth": 1.0, "linestyle": (0, (4, 2))}
+    for mover in movers:
+        axes.plot(*mover.points.T, zorder=4, **style)
+        axes.add_patch(Circle(tuple(mover.points[0]), mover.radius, color=palette.MOVER, zorder=5))
+    return [Line2D([], [], label=f"way of a mover ({len(movers)})", **style)]
 
 
 def show_movers(axes: Axes, episode: Episode, view: View) -> list[Artist]:

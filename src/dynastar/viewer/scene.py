@@ -90,12 +90,12 @@ def _is_apart(point: Floats, others: Floats, tolerance: float) -> bool:
 
 
 def plan_labels(plans: Sequence[PlanRecord], apart: float) -> list[tuple[Floats, Floats, str]]:
-    """Where plans begin, which way they set out, and their numbers from 1.
+    """Where plans begin, which way they set out, and their numbers.
 
     Those begun within ``apart`` metres share a label.
     """
     groups: list[tuple[Floats, Floats, list[int]]] = []
-    for number, plan in enumerate(plans, 1):
+    for number, plan in enumerate(plans):
         if len(plan.points) == 0:
             continue
         begin = plan.points[0]

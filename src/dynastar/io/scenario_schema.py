@@ -1,0 +1,122 @@
+"""JSON Schema of scenario files, from the same definitions that check them."""
+
+import types
+from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+
+from dynastar.config import Field
+from dynastar.io.scenario_file import (
+    MapTable,
+    PlaceTable,
+    RobotTable,
+    ScenarioTable,
+    SpeedLimitTable,
+)
+from dynastar.io.scenario_things import MoverTable, ObstacleTable
+from dynastar.navigator import NavigatorConfig
+from dynastar.robot import ROBOTS, Lidar, Limits
+from dynastar.simulation.scenario import Noise
+
+Schema = dict[str, Any]
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+_PLAIN = {bool: "boolean", int: "integer", float: "number", str: "string"}
+
+
+def scenario_schema() -> Schema:
+    """The schema of a scenario file, once TOML has been read as JSON has it."""
+    map_ = {"oneOf": [{"type": "string", "description": "a map's file"}, _table(MapTable)]}
+    pair = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 3}
+    place = {"oneOf": [pair, _table(PlaceTable)]}
+    speed_limit = _table(SpeedLimitTable)
+    speed_limit["properties"]["mask"] = map_
+    robot = _table(RobotTable)
+    robot["properties"]["base"] = {"enum": list(ROBOTS)}
+    robot["properties"]["limits"] = _optional(_table(Limits))
+    sensor = _optional(_table(Lidar))
+    sensor["properties"] |= _table(Noise)["properties"]
+    mover = _table(MoverTable)
+    mover["properties"] = {name.rstrip("_"): of for name, of in mover["properties"].items()}
+    known = {
+        "map": map_,
+        "world": map_,
+        "keepout": map_,
+        "speed_limit": speed_limit,
+        "robot": {"oneOf": [{"enum": list(ROBOTS)}, robot]},
+        "start": place,
+        "goal": place,
+        "goals": {"type": "array", "items": place},
+        "sensor": sensor,
+        "obstacles": {"type": "array", "items": _table(ObstacleTable)},
+        "movers": {"type": "array", "items": mover},
+        "navigator": _optional(_table(NavigatorConfig)),
+    }
+    schema = _table(ScenarioTable)
+    schema["properties"] |= known
+    schema["oneOf"] = [{"required": ["goal"]}, {"required": ["goals"]}]
+    return {"$schema": DIALECT, "title": "dynastar scenario", **schema}
+
+
+def _table(cls: Any) -> Schema:
+    """A table with the keys of a NamedTuple."""
+    hints = get_type_hints(cls, include_extras=True)
+    defaults = cls._field_defaults
+    properties = {}
+    for name, hint in hints.items():
+        properties[name] = _value(hint)
+        default = defaults.get(name)
+        if isinstance(default, bool | int | float | str) and default != "":
+            properties[name]["default"] = default
+    schema: Schema = {
+        "type": "object",
+        "properties": properties,
+        "additionalProperties": False,
+        "required": [name for name in hints if name not in defaults],
+    }
+    words = (cls.__doc__ or "").split("\n\n")[0]
+    return {"description": " ".join(words.split()), **schema} if words else schema
+
+
+def _optional(schema: Schema) -> Schema:
+    """The same table with nothing that has to be there: it changes what there is."""
+    properties = {
+        name: _optional(of) if of.get("type") == "object" else of
+        for name, of in schema["properties"].items()
+    }
+    return {**schema, "required": [], "properties": properties}
+
+
+def _value(hint: Any, field: Field | None = None) -> Schema:
+    """What a value of a declared type looks like."""
+    if get_origin(hint) is Annotated:
+        hint, *notes = get_args(hint)
+        field = next((note for note in notes if isinstance(note, Field)), field)
+    origin = get_origin(hint)
+    if origin in (Union, types.UnionType):
+        return _value(next(one for one in get_args(hint) if one is not type(None)), field)
+    if origin is Literal:
+        return _described({"enum": list(get_args(hint))}, field)
+    if origin is tuple:
+        return _described(_list(get_args(hint), field), field)
+    if hasattr(hint, "_field_defaults"):
+        return _table(hint)
+    if hint not in _PLAIN:
+        return _described({}, field)
+    schema: Schema = {"type": _PLAIN[hint]}
+    if field is not None and hint in (int, float):
+        bounds = (("minimum", field.low), ("maximum", field.high))
+        schema |= {name: bound for name, bound in bounds if abs(bound) != float("inf")}
+    return _described(schema, field)
+
+
+def _list(kinds: tuple[Any, ...], field: Field | None) -> Schema:
+    if len(kinds) == 2 and kinds[1] is Ellipsis:
+        return {"type": "array", "items": _value(kinds[0], field)}
+    items = [_value(kind, field) for kind in kinds]
+    return {"type": "array", "prefixItems": items, "minItems": len(items), "maxItems": len(items)}
+
+
+def _described(schema: Schema, field: Field | None) -> Schema:
+    if field is None or not field.doc:
+        return schema
+    unit = f" ({field.unit})" if field.unit else ""
+    return {**schema, "description": f"{field.doc}{unit}"}

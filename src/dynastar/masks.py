@@ -1,0 +1,65 @@
+"""Keep-out zones and speed limits as masks over a map, as Nav2's costmap filters have them."""
+
+import math
+from typing import Annotated, Literal, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.config import Field, self_checking
+from dynastar.errors import MapError
+from dynastar.grid import OCCUPIED_FROM, OccupancyGrid
+
+
+@self_checking
+class SpeedScale(NamedTuple):
+    """What the values of a speed mask, 0 to 100, mean: ``base + multiplier * value``."""
+
+    type: Annotated[
+        Literal["percent", "absolute"], Field("per cent of the robot's top speed, or m/s")
+    ] = "percent"
+    base: Annotated[float, Field("limit where the mask is 0", "", -1e3, 1e3)] = 100.0
+    multiplier: Annotated[float, Field("of the mask's value", "", -1e3, 1e3)] = -1.0
+
+
+def with_keepout(grid: OccupancyGrid, mask: OccupancyGrid) -> OccupancyGrid:
+    """``grid`` with keep-out zones where ``mask``, of any resolution, is occupied."""
+    values = _laid_over(grid, mask, -1)
+    keepout = values >= OCCUPIED_FROM
+    if grid.keepout is not None:
+        keepout |= grid.keepout
+    return OccupancyGrid(grid.values, grid.frame, keepout, grid.speed_limit)
+
+
+def with_speed_limits(
+    grid: OccupancyGrid, mask: OccupancyGrid, v_max: float, scale: SpeedScale = SpeedScale()
+) -> OccupancyGrid:
+    """``grid`` with speed limits (m/s) from ``mask``, of any resolution, and the robot's ``v_max``.
+
+    Where the mask is unknown, 0 or absent there is no limit, nor where the scale says 0, as in Nav2.
+    Raises MapError where it says less than that.
+    """
+    values = _laid_over(grid, mask, 0).astype(np.float64)
+    limits = scale.base + scale.multiplier * values
+    limits[(values <= 0) | (limits == 0.0)] = math.inf
+    if (limits < 0.0).any():
+        raise MapError(
+            f"a speed mask has limits down to {limits.min():g} with base {scale.base:g} and "
+            f"multiplier {scale.multiplier:g}: expected 0 or more"
+        )
+    if scale.type == "percent":
+        limits *= 0.01 * v_max
+    if grid.speed_limit is not None:
+        limits = np.minimum(limits, grid.speed_limit)
+    return OccupancyGrid(grid.values, grid.frame, grid.keepout, limits.astype(np.float32))
+
+
+def _laid_over(grid: OccupancyGrid, mask: OccupancyGrid, outside: int) -> npt.NDArray[np.int8]:
+    """The mask's value at the centre of each cell of ``grid``."""
+    cells = np.indices((grid.rows, grid.columns)).reshape(2, -1).T + 0.5
+    places = mask.frame.points_to_grid(grid.frame.points_to_world(cells))
+    rows, columns = np.floor(places).astype(np.int64).T
+    inside = (rows >= 0) & (rows < mask.rows) & (columns >= 0) & (columns < mask.columns)
+    values = np.full(len(cells), outside, np.int8)
+    values[inside] = mask.values[rows[inside], columns[inside]]
+    return values.reshape(grid.rows, grid.columns)

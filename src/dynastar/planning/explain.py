@@ -1,0 +1,171 @@
+"""Why there is no plan, and what would help: looked for at leisure, in the map as it is given."""
+
+import math
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.clearance import distance_to_squares
+from dynastar.errors import GoalOccupied, NoPath, OutOfMap, PlanningError, StartOccupied
+from dynastar.grid import OccupancyGrid, Unknown
+from dynastar.planning.search import SearchGrid
+
+Point = tuple[float, float]
+Floats = npt.NDArray[np.float32]
+
+HALVINGS = 20
+UNKNOWN_HELPS = "unknown = 'free' (--unknown free) plans through unknown space"
+
+
+def explained(
+    error: PlanningError,
+    grid: OccupancyGrid,
+    start: Point,
+    goal: Point,
+    radius: float,
+    unknown: Unknown,
+) -> PlanningError:
+    """An error of the same kind that says what would help, or the same where nothing more is found.
+
+    For a point where a disc of ``radius`` metres does not fit: what is there, and the nearest place
+    where it fits. For two points that nothing connects: the widest disc that would pass, and where.
+    """
+    words = None
+    if isinstance(error, StartOccupied):
+        words = misfit(grid, "the start", start, radius, unknown)
+    elif isinstance(error, GoalOccupied):
+        words = misfit(grid, "the goal", goal, radius, unknown)
+    elif isinstance(error, NoPath):
+        words = parted(grid, start, goal, radius, unknown)
+    return error if words is None else type(error)(words)
+
+
+def misfit(
+    grid: OccupancyGrid, what: str, xy: Point, radius: float, unknown: Unknown
+) -> str | None:
+    """Why a disc does not fit at a point, and where the nearest place is; None if it fits.
+
+    Raises OutOfMap for a point off the map.
+    """
+    x, y = xy[0], xy[1]
+    try:
+        cell = grid.world_to_cell(x, y)
+    except OutOfMap as error:
+        raise OutOfMap(f"{what} {error}") from None
+    blocked = grid.blocked(unknown)
+    field = distance_to_squares(blocked) * grid.resolution
+    if blocked[cell]:
+        trouble = f"is in {_kind(grid, cell)}"
+    else:
+        gap, near = _nearest_blocked(grid, blocked, (x, y))
+        if gap >= radius and field[cell] >= radius:
+            return None
+        what_is_near = "the map's edge" if near is None else _kind(grid, near)
+        trouble = f"is {gap:.3g} m from {what_is_near}, nearer than the radius of {radius:.3g} m"
+        if gap >= radius:
+            trouble = f"has no cell beside it where a radius of {radius:.3g} m fits"
+    words = [f"{what} ({x:g}, {y:g}) {trouble}", _nearest_fit(grid, field, (x, y), radius)]
+    if unknown == "blocked" and grid.unknown.any() and not grid.blocked("free")[cell]:
+        words += [UNKNOWN_HELPS] if grid.unknown[cell] else []
+    return "; ".join(words)
+
+
+def parted(
+    grid: OccupancyGrid, start: Point, goal: Point, radius: float, unknown: Unknown
+) -> str | None:
+    """Why nothing connects two points of the map, in words; None if something does."""
+    ends = grid.world_to_cell(start[0], start[1]), grid.world_to_cell(goal[0], goal[1])
+    field = distance_to_squares(grid.blocked(unknown))
+    width, where = _widest(field, ends)
+    if width * grid.resolution >= radius > 0.0:
+        return None
+    words = (
+        f"no way leads from ({start[0]:g}, {start[1]:g}) to ({goal[0]:g}, {goal[1]:g}) "
+        f"for a radius of {radius:.3g} m"
+    )
+    if width > 0.0:
+        x, y = grid.cell_to_world(*where)
+        words += (
+            f"; the widest that would pass has {_rounded_down(width * grid.resolution):g} m, "
+            f"and ({x:.4g}, {y:.4g}) is where it is narrowest"
+        )
+    else:
+        words += ", nor for any other"
+    if unknown == "blocked" and _widest(distance_to_squares(grid.blocked("free")), ends)[0] > width:
+        words += f"; {UNKNOWN_HELPS}"
+    if grid.keepout is not None:
+        without = OccupancyGrid(grid.values, grid.frame).blocked(unknown)
+        if _widest(distance_to_squares(without), ends)[0] > width:
+            words += "; keep-out zones are in the way"
+    return words
+
+
+def _kind(grid: OccupancyGrid, cell: tuple[int, int]) -> str:
+    """What blocks a cell."""
+    if grid.occupied[cell]:
+        return "an obstacle"
+    if grid.keepout is not None and grid.keepout[cell]:
+        return "a keep-out zone"
+    return "unknown space"
+
+
+def _nearest_blocked(
+    grid: OccupancyGrid, blocked: npt.NDArray[np.bool_], xy: Point
+) -> tuple[float, tuple[int, int] | None]:
+    """Metres from a point to the nearest blocked square or the map's edge, and the square's cell."""
+    row, column = grid.frame.to_grid(*xy)
+    rows, columns = np.nonzero(blocked)
+    edge = min(row, column, grid.rows - row, grid.columns - column)
+    if len(rows):
+        away = np.hypot(
+            np.maximum(np.abs(rows + 0.5 - row) - 0.5, 0.0),
+            np.maximum(np.abs(columns + 0.5 - column) - 0.5, 0.0),
+        )
+        at = int(away.argmin())
+        if away[at] <= edge:
+            return float(away[at]) * grid.resolution, (int(rows[at]), int(columns[at]))
+    return edge * grid.resolution, None
+
+
+def _nearest_fit(grid: OccupancyGrid, field: Floats, xy: Point, radius: float) -> str:
+    rows, columns = np.nonzero((field >= radius) & (field > 0.0))
+    if len(rows) == 0:
+        widest = _rounded_down(float(field.max()))
+        return f"it fits nowhere on this map; the widest that does has {widest:g} m"
+    points = grid.frame.points_to_world(np.column_stack([rows, columns]) + 0.5)
+    away = np.hypot(*(points - (xy[0], xy[1])).T)
+    x, y = points[away.argmin()]
+    return f"the nearest place where it fits is ({x:.4g}, {y:.4g}), {away.min():.3g} m away"
+
+
+def _widest(
+    field: Floats, ends: tuple[tuple[int, int], tuple[int, int]]
+) -> tuple[float, tuple[int, int]]:
+    """Radius, in cells, of the widest disc that could go between two cells, and where it is narrowest.
+
+    0 if none can. ``field`` has the cells from every cell's centre to the nearest blocked square.
+    """
+    low, high = 0.0, float(min(field[ends[0]], field[ends[1]]))
+    if not _connected(field > 0.0, ends):
+        return 0.0, ends[0]
+    if _connected(field >= high, ends):
+        low = high
+    else:
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if _connected(field >= middle, ends) else (low, middle)
+    free = (field > 0.0) & (field >= low)
+    cells = SearchGrid(~free).search(*ends, "astar").cells
+    row, column = cells[field[cells[:, 0], cells[:, 1]].argmin()]
+    return float(field[row, column]), (int(row), int(column))
+
+
+def _connected(free: npt.NDArray[np.bool_], ends: tuple[tuple[int, int], tuple[int, int]]) -> bool:
+    """Whether two cells are free and connected; nothing squeezes between two blocked corners."""
+    _, parts = cv2.connectedComponents(free.view(np.uint8), connectivity=4)
+    return bool(parts[ends[0]] == parts[ends[1]] != 0)
+
+
+def _rounded_down(metres: float) -> float:
+    return math.floor(1e3 * metres) / 1e3

@@ -1,0 +1,40 @@
+"""Keep-out zones and speed limits from masks of any resolution."""
+
+import numpy as np
+import pytest
+
+from dynastar.errors import ConfigError, MapError
+from dynastar.grid import GridFrame, OccupancyGrid
+from dynastar.masks import SpeedScale, with_keepout, with_speed_limits
+
+GRID = OccupancyGrid(np.zeros((4, 6), np.int8), GridFrame(0.5, 1.0, 2.0))
+
+
+def test_a_keep_out_mask_of_another_resolution_and_place_is_laid_over():
+    mask = OccupancyGrid(np.array([[0, 100], [0, -1]], np.int8), GridFrame(1.0, 2.0, 2.0))
+    keepout = with_keepout(GRID, mask).keepout
+    assert np.argwhere(keepout).tolist() == [[0, 4], [0, 5], [1, 4], [1, 5]]
+    both = with_keepout(with_keepout(GRID, mask), OccupancyGrid(np.full((1, 1), 100), 2.0))
+    assert both.keepout.sum() == 4  # the other lies beside the map
+    turned = OccupancyGrid(np.array([[100]], np.int8), GridFrame(1.0, 1.5, 2.5, np.pi / 4))
+    assert with_keepout(GRID, turned).keepout[2, 1]
+
+
+def test_percentages_are_of_the_top_speed_and_zero_is_no_limit():
+    values = np.array([[0, -1, 20, 100, 50, 0]] * 4, np.int8)
+    mask = OccupancyGrid(values, GRID.frame)
+    limits = with_speed_limits(GRID, mask, 2.0).speed_limit
+    assert limits[0].tolist() == pytest.approx([np.inf, np.inf, 1.6, np.inf, 1.0, np.inf])
+    absolute = SpeedScale("absolute", 0.0, 0.01)
+    limits = with_speed_limits(GRID, mask, 2.0, absolute).speed_limit
+    assert limits[1].tolist() == pytest.approx([np.inf, np.inf, 0.2, 1.0, 0.5, np.inf])
+    lower = with_speed_limits(with_speed_limits(GRID, mask, 2.0), mask, 2.0, absolute)
+    assert lower.speed_limit[0].tolist() == pytest.approx([np.inf, np.inf, 0.2, 1.0, 0.5, np.inf])
+
+
+def test_limits_below_zero_and_scales_that_are_none_are_refused():
+    mask = OccupancyGrid(np.full((4, 6), 100, np.int8), GRID.frame)
+    with pytest.raises(MapError, match="down to -100"):
+        with_speed_limits(GRID, mask, 2.0, SpeedScale("percent", 0.0, -1.0))
+    with pytest.raises(ConfigError, match="expected one of 'percent', 'absolute'"):
+        SpeedScale("m/s")
