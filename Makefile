@@ -9,7 +9,7 @@ FIND_PYTHON = for python in python3.11 python3 python3.12 python3.13 python; do 
 	$$python -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2>/dev/null \
 	&& echo $$python && break; done
 
-.PHONY: help setup check test test-all dist demo suites paper bench clean
+.PHONY: help setup check test test-all dist docs demo suites paper bench clean
 
 help:
 	@echo "make setup   make .venv and install dynastar with its tools into it"
@@ -17,6 +17,7 @@ help:
 	@echo "make test    run the tests (those on public data, too, where DYNASTAR_DATA has it)"
 	@echo "make test-all  the same with each Python of $(PYTHONS) that is found, installed from the wheel"
 	@echo "make check   ruff, mypy, import-linter"
+	@echo "make docs    the documentation as a site of HTML, in out/docs"
 	@echo "make dist    wheel and source distribution in dist"
 	@echo "make suites  the suites movingai (needs DYNASTAR_DATA) and paper; JSON in out/suites"
 	@echo "make paper   the paper's tables and figures, and those of docs/paper.md; two hours"
@@ -41,6 +42,10 @@ check: setup
 
 test: setup
 	$(BIN)/python -m pytest -n 2
+
+docs: setup
+	$(BIN)/python -m sphinx -q -W --keep-going -b html docs out/docs
+	@echo "open out/docs/index.html"
 
 dist: setup
 	rm -rf dist

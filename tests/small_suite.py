@@ -29,8 +29,8 @@ def scenario(mission: Mission, options: Any, repeat: int) -> Scenario:
     return driven.realistic(made, options)
 
 
-def fly(mission: Mission, options: Any, repeat: int) -> dict[str, Any]:
-    return driven.fly(
+def run_mission(mission: Mission, options: Any, repeat: int) -> dict[str, Any]:
+    return driven.run_mission(
         scenario(mission, options, repeat),
         options,
         mission,
@@ -49,5 +49,5 @@ SUITE = SimpleNamespace(
     missions=lambda options: [Mission(3), Mission(4), Mission(5)],
     leave_out=lambda mission, options: "by rule" if mission.number == 4 else "",
     scenario=scenario,
-    fly=fly,
+    run_mission=run_mission,
 )

@@ -1,6 +1,9 @@
 """The pages say what is so: names exist, pictures are there, tables have their places."""
 
 import re
+import shlex
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -8,18 +11,24 @@ import pytest
 from dynastar.bench import ablation, presets, table1, table1_tables, table3, targets, terms
 from dynastar.bench.table1 import LARGE
 from dynastar.bench.tables import as_markdown
+from dynastar.cli import main
 
 ROOT = Path(__file__).parent.parent
 SOURCES = ROOT / "src" / "dynastar"
 PAPER = (ROOT / "docs" / "paper.md").read_text(encoding="utf-8")
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES += [
+    page for page in sorted((ROOT / "docs").glob("*/*.md")) if page.parent.name != "reference"
+]
+LESSONS = [ROOT / "docs" / "tutorial.md", *sorted((ROOT / "docs" / "how-to").glob("*.md"))]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_every_link_to_a_file_leads_to_one(page):
     links = re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8"))
     for link in links:
-        assert (page.parent / link).exists(), link
+        generated = "reference/" in link and link.endswith((".md", ".rst"))
+        assert generated or (page.parent / link).exists(), link
 
 
 def test_each_function_beside_an_equation_is_in_the_file_that_is_named():
@@ -69,3 +78,36 @@ def test_every_line_of_the_ablation_that_the_page_names_is_one():
         name = row.strip()
         if name.startswith(("Eq. 2", "Eq. 9", "bearing", "constant", "window", "no re")):
             assert name in lines, name
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", LESSONS, ids=lambda page: page.stem)
+def test_every_block_of_a_lesson_works_in_the_order_of_the_page(page, tmp_path, monkeypatch):
+    """Runs the commands and the Python of a page, and writes the files that it names."""
+    monkeypatch.chdir(tmp_path)
+    names = {"__name__": "lesson"}
+    source = page.read_text("utf-8")
+    for block in re.finditer(r"^```(\w+)\n(.*?)^```", source, re.DOTALL | re.MULTILINE):
+        kind, text = block.groups()
+        if kind == "python":
+            exec(compile(text, str(page), "exec"), names)
+        elif kind == "sh":
+            for line in text.splitlines():
+                program, *words = shlex.split(line)
+                assert (program, main(words)) == ("dynastar", 0), line
+        else:
+            file = re.findall(r"`([\w.]+\.(?:toml|txt))`", source[: block.start()])[-1]
+            (tmp_path / file).write_text(text)
+
+
+@pytest.mark.slow
+def test_the_documentation_is_built_without_a_warning(tmp_path):
+    command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html"]
+    done = subprocess.run(
+        [*command, ROOT / "docs", tmp_path / "site"], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    for page in ("index", "tutorial", "reference/settings", "reference/python", "paper"):
+        text = (tmp_path / "site" / f"{page}.html").read_text("utf-8")
+        outside = re.findall(r'(?:src|rel="stylesheet" href)="(https?://[^"]*)"', text)
+        assert not outside, f"{page} loads {outside[:3]} from the network"

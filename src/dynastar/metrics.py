@@ -20,8 +20,8 @@ class Metrics(NamedTuple):
     both contact counts are 0 or 1. ``replans`` are the plans after the first, ``recoveries`` the
     events of that kind. ``command_ms_mean`` and ``command_ms_max`` (ms) are wall time over all
     calls of ``command``: sensing, planning and the first calls, which may compile, included.
-    ``smoothness`` is the total variation of the turning rate per metre, sum |omega_{i+1} - omega_i|
-    / length in (rad/s)/m: 0 on a line or a single arc, small is smooth. ``mean_speed`` (m/s) is the
+    ``smoothness`` is the total variation of the turning rate per metre, ``sum |omega_{i+1} - omega_i|
+    / length`` in (rad/s)/m: 0 on a line or a single arc, small is smooth. ``mean_speed`` (m/s) is the
     length over the time until rest. ``goals_reached`` counts goals in order.
     """
 

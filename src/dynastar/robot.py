@@ -20,10 +20,10 @@ class Limits(NamedTuple):
 
     v_max: Annotated[float, Field("largest forward speed", "m/s", 0.01, 20.0)]
     omega_max: Annotated[float, Field("largest turning rate, either way", "rad/s", 0.01, 20.0)]
-    v_accel: Annotated[float, Field("speeding up", "m/s2", 0.01, 100.0)]
-    omega_accel: Annotated[float, Field("speeding up a turn", "rad/s2", 0.01, 200.0)]
-    v_brake: Annotated[float, Field("slowing down", "m/s2", 0.01, 100.0)]
-    omega_brake: Annotated[float, Field("slowing down a turn", "rad/s2", 0.01, 200.0)]
+    v_accel: Annotated[float, Field("largest acceleration", "m/s2", 0.01, 100.0)]
+    omega_accel: Annotated[float, Field("largest angular acceleration", "rad/s2", 0.01, 200.0)]
+    v_brake: Annotated[float, Field("largest deceleration", "m/s2", 0.01, 100.0)]
+    omega_brake: Annotated[float, Field("largest angular deceleration", "rad/s2", 0.01, 200.0)]
     v_min: Annotated[float, Field("smallest speed, negative to reverse", "m/s", -20.0, 0.0)] = 0.0
 
 
@@ -35,8 +35,8 @@ class Lidar(NamedTuple):
     fov: Annotated[float, Field("angle from the first beam to the last", "rad", 0.01, math.tau)] = (
         math.tau
     )
-    range_min: Annotated[float, Field("readings below are blind", "m", 0.0, 10.0)] = 0.0
-    range_max: Annotated[float, Field("nothing is seen beyond", "m", 0.1, 200.0)] = 5.0
+    range_min: Annotated[float, Field("smallest range that is measured", "m", 0.0, 10.0)] = 0.0
+    range_max: Annotated[float, Field("largest range that is measured", "m", 0.1, 200.0)] = 5.0
     x: Annotated[float, Field("mount, forward of the base", "m", -5.0, 5.0)] = 0.0
     y: Annotated[float, Field("mount, left of the base", "m", -5.0, 5.0)] = 0.0
     theta: Annotated[float, Field("mount, direction of the middle", "rad", -math.tau, math.tau)] = (

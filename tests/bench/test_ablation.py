@@ -164,10 +164,10 @@ def test_rows_come_world_by_world_and_an_error_is_one(tmp_path, monkeypatch):
 
 def test_arms_drive_as_they_say():
     scenario = paper.world(0, 5)
-    default = ablation.fly(scenario, "default")
-    suites = paper.fly(Mission(5), Options(), 0)
+    default = ablation.run_mission(scenario, "default")
+    suites = paper.run_mission(Mission(5), Options(), 0)
     assert default["length"] == suites["length"]
-    follower = ablation.fly(scenario, "path following alone")
+    follower = ablation.run_mission(scenario, "path following alone")
     assert (follower["outcome"], follower["contacts_moving"]) == ("contact", 1)
 
 
@@ -183,8 +183,8 @@ def test_in_the_people_suite_an_arm_keeps_the_suites_own_settings():
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ablation, "drive", drive)
-        ablation.fly(scenario, "no risk", {"comfort": 0.2})
-        ablation.fly(scenario, "period 0.2 s")
+        ablation.run_mission(scenario, "no risk", {"comfort": 0.2})
+        ablation.run_mission(scenario, "period 0.2 s")
     assert seen[0] == {**scenario.navigator, "comfort": 0.2, "dwa": {"weights": {"risk": 0.0}}}
     assert (own, seen[1]["period"]) == (0.05, 0.2)
 

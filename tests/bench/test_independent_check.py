@@ -158,7 +158,7 @@ def test_barn_worlds_from_their_own_files(
     cls = blind(2.0) if controller == "blind" else controller_named(controller)
     monkeypatch.setattr("dynastar.bench.driven.controller_named", lambda name: cls)
     options = Options(data=data_dir, controller=controller)
-    row = barn.fly(Mission(number), options, 0)
+    row = barn.run_mission(Mission(number), options, 0)
     episode = drive(barn.scenario(Mission(number), options, 0), navigator=cls)
     save_episode(episode, tmp_path / "episode.npz")
     saved = independent.read(tmp_path / "episode.npz")

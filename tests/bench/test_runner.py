@@ -21,7 +21,7 @@ def suite(numbers: Any, default: int | None = None, left_out: Any = ()) -> Any:
     def missions(options: Options) -> Iterator[Mission]:
         return (Mission(number, 2 * number) for number in numbers())
 
-    def fly(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
+    def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
         if mission.number == 13:
             raise RuntimeError("unlucky")
         return {"outcome": "arrived", "length": float(mission.spec), "time": 1.0 + repeat}
@@ -30,7 +30,7 @@ def suite(numbers: Any, default: int | None = None, left_out: Any = ()) -> Any:
         DEFAULT_MISSIONS=default,
         missions=missions,
         leave_out=lambda mission, options: "by rule" if mission.number in left_out else "",
-        fly=fly,
+        run_mission=run_mission,
     )
 
 
@@ -106,18 +106,20 @@ def test_a_run_goes_on_where_it_was_cut_off(tmp_path: Path) -> None:
     keep, flown = tmp_path / "rows.jsonl", []
     made = suite(lambda: range(11, 16))
     whole = run_suite("made up", made, Options(repeat=2))
-    fly = made.fly
+    run_mission = made.run_mission
 
     def cut_off(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
         if len(flown) == 3:
             raise KeyboardInterrupt
         flown.append((mission.number, repeat))
-        return fly(mission, options, repeat)
+        return run_mission(mission, options, repeat)
 
-    made.fly = cut_off
+    made.run_mission = cut_off
     with pytest.raises(KeyboardInterrupt):
         run_suite("made up", made, Options(repeat=2), keep=keep)
-    made.fly = lambda *asked: flown.append((asked[0].number, asked[2])) or fly(*asked)
+    made.run_mission = lambda *asked: (
+        flown.append((asked[0].number, asked[2])) or run_mission(*asked)
+    )
     assert run_suite("made up", made, Options(repeat=2), keep=keep)["rows"] == whole["rows"]
     assert len(flown) == len(set(flown)) == 10
     # More missions go on, too; another seed or setting begins anew.

@@ -14,7 +14,7 @@ from dynastar.viewer.sheet import save
 def module(name, outcomes, quick=2, **more):
     made = ModuleType(name)
 
-    def fly(mission, options, repeat):
+    def run_mission(mission, options, repeat):
         return {
             "outcome": mission.spec,
             "group": f"{name} {mission.number % 2}",
@@ -27,7 +27,7 @@ def module(name, outcomes, quick=2, **more):
     made.QUICK_MISSIONS = quick
     made.missions = lambda options: [Mission(n, o) for n, o in enumerate(outcomes)]
     made.leave_out = lambda mission, options: ""
-    made.fly = fly
+    made.run_mission = run_mission
     vars(made).update(more)
     return made
 
@@ -90,12 +90,14 @@ def test_a_run_goes_on_where_it_was_cut_off(suites, tmp_path):
         if len(flown) == 3:
             raise KeyboardInterrupt
         flown.append(mission.number)
-        return fly(mission, options, repeat)
+        return run_mission(mission, options, repeat)
 
-    fly, suites["first"].fly = suites["first"].fly, cut_off
+    run_mission, suites["first"].run_mission = suites["first"].run_mission, cut_off
     with pytest.raises(KeyboardInterrupt):
         scoreboard.run_all(Options(), keep=keep)
-    suites["first"].fly = lambda *asked: flown.append(asked[0].number) or fly(*asked)
+    suites["first"].run_mission = lambda *asked: (
+        flown.append(asked[0].number) or run_mission(*asked)
+    )
     again = scoreboard.run_all(Options(), keep=keep)
     assert sorted(flown) == list(range(6))
     for name in ("first", "second"):

@@ -55,12 +55,12 @@ def run(
     return collect("ablation", work, jobs, folder / "ablation.jsonl", run_of, workers, progress)
 
 
-def fly(scenario: Scenario, arm: str, settings: Mapping[str, Any] | None = None) -> Row:
+def run_mission(scenario: Scenario, arm: str, settings: Mapping[str, Any] | None = None) -> Row:
     """Drives a world the way of an arm and returns its metrics; "error" if that raises."""
     preset, of_arm, follows = ARMS[arm]
     navigator = merged(merged(scenario.navigator, settings or {}), of_arm)
-    flown = replace(scenario, preset=preset, navigator=navigator)
-    return row_of(lambda: measure(drive(flown, navigator=Follower if follows else None))._asdict())
+    driven = replace(scenario, preset=preset, navigator=navigator)
+    return row_of(lambda: measure(drive(driven, navigator=Follower if follows else None))._asdict())
 
 
 def summary(rows: Sequence[Row]) -> dict[str, dict[str, dict[str, Any]]]:
@@ -80,11 +80,11 @@ def summary(rows: Sequence[Row]) -> dict[str, dict[str, dict[str, Any]]]:
     }
 
 
-def _summed(flown: dict[int, Row], base: dict[int, Row]) -> dict[str, Any]:
-    arrived = {number: row for number, row in flown.items() if row["outcome"] == "arrived"}
+def _summed(driven: dict[int, Row], base: dict[int, Row]) -> dict[str, Any]:
+    arrived = {number: row for number, row in driven.items() if row["outcome"] == "arrived"}
     common = [n for n in arrived if n in base and base[n]["outcome"] == "arrived"]
     moving, resting = (
-        sum(bool(row.get(f"contacts_{kind}")) for row in flown.values())
+        sum(bool(row.get(f"contacts_{kind}")) for row in driven.values())
         for kind in ("moving", "resting")
     )
 
@@ -96,14 +96,14 @@ def _summed(flown: dict[int, Row], base: dict[int, Row]) -> dict[str, Any]:
     }
     ends = {"timeouts": "timeout", "blocked": "blocked", "errors": "error"}
     return {
-        "missions": len(flown),
+        "missions": len(driven),
         "arrived": len(arrived),
-        "arrived_interval": wilson(len(arrived), len(flown)),
+        "arrived_interval": wilson(len(arrived), len(driven)),
         "contacts_moving": moving,
         "contacts_resting": resting,
-        "touched_interval": wilson(moving + resting, len(flown)),
+        "touched_interval": wilson(moving + resting, len(driven)),
         **{
-            name: sum(row["outcome"] == outcome for row in flown.values())
+            name: sum(row["outcome"] == outcome for row in driven.values())
             for name, outcome in ends.items()
         },
         "mean_length": mean("length"),
@@ -183,4 +183,4 @@ def _row(job: tuple[str, int, str], seed: int, settings: Mapping[str, Any] | Non
     suite: Any = load_suite(name)
     made: Scenario = suite.scenario(Mission(number), Options(seed=seed), 0)
     made = replace(made, seed=made.seed + seed)
-    return {"suite": name, "number": number, "arm": arm, **fly(made, arm, settings)}
+    return {"suite": name, "number": number, "arm": arm, **run_mission(made, arm, settings)}

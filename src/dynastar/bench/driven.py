@@ -37,7 +37,7 @@ def realistic(scenario: Scenario, options: Options) -> Scenario:
     )
 
 
-def fly(
+def run_mission(
     scenario: Scenario,
     options: Options,
     mission: Mission,

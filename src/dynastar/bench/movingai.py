@@ -78,7 +78,7 @@ def prepared(path: Path) -> tuple[SearchGrid, int]:
     return search, grid.rows
 
 
-def fly(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
+def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
     """Searches and compares; ``expected``, ``found``, ``length`` and ``error`` are in cells."""
     del repeat
     query: Query = mission.spec

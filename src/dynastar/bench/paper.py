@@ -67,9 +67,9 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
     return made
 
 
-def fly(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
+def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
     """Drives one world and returns its metrics as a row."""
-    return driven.fly(scenario(mission, options, repeat), options, mission, repeat)
+    return driven.run_mission(scenario(mission, options, repeat), options, mission, repeat)
 
 
 @lru_cache(maxsize=4)

@@ -35,6 +35,7 @@ SUITES = {
     "random": "dynastar.bench.suites.random_worlds",
     "people": "dynastar.bench.suites.people",
     "faults": "dynastar.bench.suites.faults",
+    "scenarios": "dynastar.bench.suites.scenarios",
 }
 
 
@@ -84,7 +85,7 @@ class Suite(Protocol):
     def leave_out(self, mission: Mission, options: Options) -> str:
         """Why this mission is left out by the suite's rule, or "" to run it."""
 
-    def fly(self, mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
+    def run_mission(self, mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
         """Runs a mission and returns its row: ``outcome``, ``length`` and whatever else there is.
 
         Read for the totals: ``outcome`` ("arrived", "timeout", ...), ``length`` (m), ``time`` (s),
@@ -307,14 +308,14 @@ def run_job(options: Options, job: Job) -> dict[str, Any]:
     suite = load_suite(job.suite) if isinstance(job.suite, str) else job.suite
     if options.observe is not None:
         options = options._replace(observe=partial(options.observe, job.key[0]))
-    row = row_of(lambda: suite.fly(job.mission, options, job.repeat))
+    row = row_of(lambda: suite.run_mission(job.mission, options, job.repeat))
     again = {"number": job.mission.number, "repeat": job.repeat, "seed": options.seed + job.repeat}
     return {**again, "preset": options.preset, **row}
 
 
-def row_of(fly: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+def row_of(run_mission: Callable[[], dict[str, Any]]) -> dict[str, Any]:
     """The row that a mission comes to; one that raises has the outcome "error" and the reason."""
     try:
-        return fly()
+        return run_mission()
     except Exception as error:  # a failure is a row, whatever it is: none may go uncounted
         return {"outcome": "error", "reason": f"{type(error).__name__}: {error}"}

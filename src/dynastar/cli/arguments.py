@@ -27,6 +27,7 @@ SUITES = (
     "faults",
     "random",
     "people",
+    "scenarios",
 )
 
 PLAN_EXAMPLES = """\
@@ -53,6 +54,7 @@ examples:
   dynastar bench barn --replay 17               # mission 17 again, with pictures and the episode
   dynastar bench barn --set dwa.horizon=2 --save-failures out/failures --json-out b.json
   dynastar bench maps --controller pure_pursuit
+  dynastar bench scenarios --data examples/features
   dynastar bench all --quick --data data --out out/bench
   dynastar bench compare barn.json b.json
 

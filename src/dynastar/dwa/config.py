@@ -51,22 +51,27 @@ class DwaConfig(NamedTuple):
     weights: Weights = Weights()
     search: Annotated[
         Search,
-        Field("samples are held for a while and then follow, stop or back off; or constant arcs"),
+        Field("samples followed by a tail (follow, stop, reverse), or constant arcs"),
     ] = "manoeuvres"
     progress: Annotated[
         Literal["cost-to-go", "bearing"],
         Field("heading of Eq. 8: decrease of the cost-to-go, or the bearing of a target"),
     ] = "cost-to-go"
-    arc_time: Annotated[float, Field("shortest time a sample is held", "s", 0.1, 10.0)] = 0.5
-    horizon: Annotated[float, Field("how far ahead risk is looked for", "s", 0.2, 30.0)] = 4.0
+    arc_time: Annotated[
+        float, Field("shortest time for which a sample is held", "s", 0.1, 10.0)
+    ] = 0.5
+    horizon: Annotated[float, Field("how far ahead manoeuvres are scored", "s", 0.2, 30.0)] = 4.0
     step: Annotated[float, Field("time between the points of a roll-out", "s", 0.01, 1.0)] = 0.1
     reach: Annotated[
-        float, Field("a sample is reached in so long at most; 0: in one period", "s", 0.0, 5.0)
+        float,
+        Field("time within which a sampled velocity is reached; 0: one period", "s", 0.0, 5.0),
     ] = 1.0
     v_samples: Annotated[int, Field("speeds in the window", "", 2, 1000)] = 5
     omega_samples: Annotated[int, Field("turning rates in the window", "", 2, 1000)] = 11
-    comfort: Annotated[float, Field("more clearance is no better", "m", 0.01, 10.0)] = 0.25
-    hysteresis: Annotated[float, Field("what a change of mind has to be worth", "", 0.0, 10.0)] = (
-        0.02
-    )
+    comfort: Annotated[
+        float, Field("clearance beyond which the dist term is constant", "m", 0.01, 10.0)
+    ] = 0.25
+    hysteresis: Annotated[
+        float, Field("score by which a new manoeuvre must exceed the last one", "", 0.0, 10.0)
+    ] = 0.02
     arcs: ArcsConfig = ArcsConfig()

@@ -47,12 +47,18 @@ class ScenarioTable(NamedTuple):
     world: Any = None
     keepout: Any = None
     speed_limit: Any = None
-    seed: Annotated[int, Field("of all noise", "", 0, 2**63 - 1)] = 0
-    time_limit: Annotated[float, Field("when to give up", "s", 0.1, 1e5)] = 300.0
-    latency: Annotated[float, Field("a command acts so much later", "s", 0.0, 1.0)] = 0.0
-    unknown: Annotated[Unknown, Field("what unknown space is taken for")] = "blocked"
-    goal_tolerance: Annotated[float, Field("so near is there", "m", 0.01, 5.0)] = 0.25
-    heading_tolerance: Annotated[float, Field("so well aligned is aligned", "rad", 0.01, 3.2)] = 0.1
+    seed: Annotated[int, Field("seed of all noise", "", 0, 2**63 - 1)] = 0
+    time_limit: Annotated[
+        float, Field("time after which the mission is a timeout", "s", 0.1, 1e5)
+    ] = 300.0
+    latency: Annotated[float, Field("delay until a command takes effect", "s", 0.0, 1.0)] = 0.0
+    unknown: Annotated[Unknown, Field("how unknown space is planned")] = "blocked"
+    goal_tolerance: Annotated[
+        float, Field("distance at which a goal is reached", "m", 0.01, 5.0)
+    ] = 0.25
+    heading_tolerance: Annotated[
+        float, Field("heading error at which a goal is reached", "rad", 0.01, 3.2)
+    ] = 0.1
     preset: Annotated[Preset, Field("the navigator's settings")] = "default"
     sensor: Any = None
     obstacles: Any = None
@@ -93,7 +99,7 @@ class PlaceTable(NamedTuple):
 
     x: Metres
     y: Metres
-    heading: Annotated[float | None, Field("free if left out", "rad", -7.0, 7.0)] = None
+    heading: Annotated[float | None, Field("any heading if left out", "rad", -7.0, 7.0)] = None
 
 
 def load_scenario(path: str | Path) -> Scenario:

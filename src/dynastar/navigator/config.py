@@ -16,30 +16,53 @@ class NavigatorConfig(NamedTuple):
     """Everything a navigator can be told; the declared bounds are what its promise rests on."""
 
     period: Annotated[float, Field("time between two commands", "s", 0.01, 1.0)] = 0.1
-    latency: Annotated[float, Field("a command acts so much later", "s", 0.0, 1.0)] = 0.0
-    range_error: Annotated[float, Field("bound of a range's error", "m", 0.0, 1.0)] = 0.01
-    pose_error: Annotated[float, Field("bound of the position's error", "m", 0.0, 1.0)] = 0.01
-    heading_error: Annotated[float, Field("bound of the heading's error", "rad", 0.0, 0.5)] = 0.0
+    latency: Annotated[float, Field("delay until a command takes effect", "s", 0.0, 1.0)] = 0.0
+    range_error: Annotated[float, Field("largest error of a range reading", "m", 0.0, 1.0)] = 0.01
+    pose_error: Annotated[float, Field("largest error of the position", "m", 0.0, 1.0)] = 0.01
+    heading_error: Annotated[float, Field("largest error of the heading", "rad", 0.0, 0.5)] = 0.0
     hidden_speed: Annotated[
-        float, Field("somebody may come out of unseen space so fast, 0 if nobody", "m/s", 0.0, 20.0)
+        float,
+        Field("speed of a person who steps out of unseen space; 0: nobody does", "m/s", 0.0, 20.0),
     ] = 0.5
-    reverse: Annotated[bool, Field("drive back where the robot can, if need be")] = True
-    scan_age: Annotated[float, Field("older data are no data", "s", 0.05, 5.0)] = 0.3
-    unknown: Annotated[Literal["free", "blocked"], Field("plan through unknown space?")] = "blocked"
-    goal_tolerance: Annotated[float, Field("so near is there", "m", 0.01, 5.0)] = 0.25
-    heading_tolerance: Annotated[float, Field("so well aligned is aligned", "rad", 0.01, 3.2)] = 0.1
+    reverse: Annotated[bool, Field("reverse where needed and possible")] = True
+    scan_age: Annotated[
+        float, Field("largest age of a scan or state before the robot brakes", "s", 0.05, 5.0)
+    ] = 0.3
+    unknown: Annotated[Literal["free", "blocked"], Field("how unknown space is planned")] = (
+        "blocked"
+    )
+    goal_tolerance: Annotated[
+        float, Field("distance at which a goal is reached", "m", 0.01, 5.0)
+    ] = 0.25
+    heading_tolerance: Annotated[
+        float, Field("heading error at which a goal is reached", "rad", 0.01, 3.2)
+    ] = 0.1
     global_path: Annotated[
         Literal["replanned", "strayed", "once"],
-        Field("planned whenever need be, or where the robot left it (V, step 4), or once"),
+        Field(
+            "replan when needed, or when the robot has left the path (section V, step 4), or never"
+        ),
     ] = "replanned"
     stray: Annotated[
-        float, Field("further from its path a robot has left it (V, step 4)", "m", 0.01, 100.0)
+        float,
+        Field(
+            "distance from the path at which the robot has left it (section V, step 4)",
+            "m",
+            0.01,
+            100.0,
+        ),
     ] = 1.0
-    planning_resolution: Annotated[float, Field("plan on cells no larger", "m", 0.001, 10.0)] = 0.05
-    comfort: Annotated[float, Field("clearance a plan has to spare if it can", "m", 0.0, 5.0)] = 0.1
-    stuck_time: Annotated[float, Field("no progress for so long is stuck", "s", 0.5, 120.0)] = 6.0
-    attempts: Annotated[int, Field("rounds of recovery before giving up", "", 0, 100)] = 4
-    track: Annotated[bool, Field("tell moving obstacles from what stands")] = True
+    planning_resolution: Annotated[
+        float, Field("largest cell of the planning map", "m", 0.001, 10.0)
+    ] = 0.05
+    comfort: Annotated[
+        float, Field("extra clearance of a plan where there is room", "m", 0.0, 5.0)
+    ] = 0.1
+    stuck_time: Annotated[
+        float, Field("time without progress until a recovery", "s", 0.5, 120.0)
+    ] = 6.0
+    attempts: Annotated[int, Field("recoveries before the mission is given up", "", 0, 100)] = 4
+    track: Annotated[bool, Field("track moving obstacles")] = True
     planner: PlannerConfig = PlannerConfig(exact=True)
     dwa: DwaConfig = DwaConfig()
     local_map: LocalMapConfig = LocalMapConfig()

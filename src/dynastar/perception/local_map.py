@@ -23,10 +23,11 @@ class LocalMapConfig(NamedTuple):
 
     resolution: Annotated[float, Field("side of a cell, or less", "m", 0.01, 1.0)] = 0.05
     size: Annotated[float, Field("side of the window, in proportion", "m", 2.0, 100.0)] = 10.0
-    memory: Annotated[float, Field("what was not seen for so long is unseen", "s", 1.0, 3600.0)] = (
-        30.0
-    )
-    narrowest: Annotated[float, Field("no obstacle is narrower", "m", 0.001, 1.0)] = 0.1
+    memory: Annotated[
+        float,
+        Field("time after which a cell that is out of sight is unseen again", "s", 1.0, 3600.0),
+    ] = 30.0
+    narrowest: Annotated[float, Field("smallest width of an obstacle", "m", 0.001, 1.0)] = 0.1
 
 
 class LocalMap:

@@ -25,7 +25,7 @@ class PredictionConfig(NamedTuple):
     """How moving obstacles are predicted."""
 
     acceleration: Annotated[
-        float, Field("bound of a moving obstacle's acceleration", "m/s2", 0.0, 20.0)
+        float, Field("largest acceleration of a moving obstacle", "m/s2", 0.0, 20.0)
     ] = 1.5
     error: Annotated[float, Field("deviation of a moving obstacle's position", "m", 0.0, 2.0)] = (
         0.08

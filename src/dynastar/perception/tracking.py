@@ -24,18 +24,26 @@ NOTHING_KNOWN = Known(np.zeros((1, 1), np.bool_), GridFrame(1.0))
 class TrackerConfig(NamedTuple):
     """Settings of detection and tracking."""
 
-    gap: Annotated[float, Field("points further apart are two things", "m", 0.01, 2.0)] = 0.2
-    widest: Annotated[float, Field("no moving obstacle is wider", "m", 0.1, 5.0)] = 1.4
-    slowest: Annotated[float, Field("what is slower stands", "m/s", 0.01, 2.0)] = 0.12
-    fastest: Annotated[float, Field("nothing is faster", "m/s", 0.1, 50.0)] = 3.0
+    gap: Annotated[
+        float, Field("gap between points that separates two objects", "m", 0.01, 2.0)
+    ] = 0.2
+    widest: Annotated[float, Field("largest width of a moving obstacle", "m", 0.1, 5.0)] = 1.4
+    slowest: Annotated[float, Field("speed below which a track is at rest", "m/s", 0.01, 2.0)] = (
+        0.12
+    )
+    fastest: Annotated[float, Field("largest speed of a moving obstacle", "m/s", 0.1, 50.0)] = 3.0
     acceleration: Annotated[
         float, Field("spectral density of the acceleration", "m2/s3", 0.01, 20.0)
     ] = 0.1
     free_fraction: Annotated[
         float, Field("fraction of a mover's points in space seen free before", "", 0.0, 1.0)
     ] = 0.4
-    rest_time: Annotated[float, Field("slow for so long has stopped", "s", 0.0, 60.0)] = 1.0
-    occluded_time: Annotated[float, Field("a track is kept out of sight", "s", 0.0, 60.0)] = 6.0
+    rest_time: Annotated[
+        float, Field("time at rest after which a track has stopped", "s", 0.0, 60.0)
+    ] = 1.0
+    occluded_time: Annotated[
+        float, Field("time for which a track out of sight is kept", "s", 0.0, 60.0)
+    ] = 6.0
 
 
 class MovingObstacle(NamedTuple):

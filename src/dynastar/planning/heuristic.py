@@ -17,9 +17,10 @@ class HeuristicConfig(NamedTuple):
     """
 
     estimate: Annotated[
-        Literal["octile", "euclidean"], Field("h: the way of an 8-connected grid, or the line")
+        Literal["octile", "euclidean"],
+        Field("h: distance on an 8-connected grid, or in a straight line"),
     ] = "octile"
-    exponential: Annotated[bool, Field("whether e^(P/Q) weighs the estimate")] = True
+    exponential: Annotated[bool, Field("weight the estimate by e^(P/Q)")] = True
     q: Annotated[
         Literal["rectangle", "line", "ratio"],
         Field(
@@ -28,15 +29,13 @@ class HeuristicConfig(NamedTuple):
         ),
     ] = "rectangle"
     around: Annotated[int, Field("with q = ratio, how far 'around n' goes", "cells", 1, 10000)] = 1
-    parent: Annotated[bool, Field("whether the parent's estimate h(p) is added")] = True
+    parent: Annotated[bool, Field("add the parent's estimate h(p)")] = True
     k: Annotated[float, Field("weight of cos(beta), 0 for none", "cells", 0.0, 1e6)] = 1.0
     beta: Annotated[
         Literal["progress", "interior"],
         Field("beta: between start -> n and n -> goal, or the angle at n from start to goal"),
     ] = "progress"
-    weight: Annotated[float, Field("w of the weighted A*, no part of the others", "", 0.0, 100)] = (
-        2.0
-    )
+    weight: Annotated[float, Field("w of the weighted A*", "", 0.0, 100)] = 2.0
 
 
 # What each planner leaves of Eq. 3: f(n) = g(n) + weight e^(P/Q) (h(n) + h(p) - k cos(beta)).

@@ -52,12 +52,14 @@ class PlannerConfig(NamedTuple):
     heuristic: HeuristicConfig = HeuristicConfig()
     smoothing: Annotated[
         Literal["taut", "any-angle", "none"],
-        Field("the path is pulled taut, or also the shortest near it at any angle; or stays"),
+        Field("pull the path taut, or also shorten it at any angle, or leave it"),
     ] = "taut"
     exact: Annotated[
-        bool, Field("a navigator searches exactly, too, and takes what is clearly shorter")
+        bool, Field("also search exactly, and take that path if it is clearly shorter")
     ] = False
-    rounding: Annotated[float, Field("where a corner's rounding may begin", "m", 0.0, 10.0)] = 0.5
+    rounding: Annotated[
+        float, Field("distance from a corner at which its rounding begins", "m", 0.0, 10.0)
+    ] = 0.5
 
 
 @dataclass(frozen=True, eq=False)

@@ -92,7 +92,7 @@ def test_a_contact_or_a_stop_on_the_way_scores_nothing(folder: Path) -> None:
 def test_a_row_has_the_score_and_the_clock(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(driven, "time_bound", lambda scenario: 5.0)
     monkeypatch.setattr(driven, "controller_named", lambda name: Scripted)
-    row = barn.fly(Mission(7), Options(data=folder), 0)
+    row = barn.run_mission(Mission(7), Options(data=folder), 0)
     assert row["optimal_time"] == pytest.approx(official_length(folder, 7) / 2.0)
     assert row["outcome"] == "arrived"
     assert row["group"] == "static"

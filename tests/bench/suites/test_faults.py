@@ -59,7 +59,7 @@ class Raising(Straight):
 def flown(monkeypatch, mission, controller, **more):
     monkeypatch.setattr(driven, "controller_named", lambda name: controller)
     monkeypatch.setattr(driven, "time_bound", lambda scenario: None)
-    return faults.fly(mission, Options(controller="given", **more), 0)
+    return faults.run_mission(mission, Options(controller="given", **more), 0)
 
 
 def test_every_case_strikes_both_robots_at_three_times():

@@ -288,6 +288,6 @@ def test_the_scenario_of_a_number(monkeypatch):
 
 
 def test_rows_say_the_mode(monkeypatch):
-    monkeypatch.setattr(suite.driven, "fly", lambda *a, group, **more: {"group": group})
-    assert suite.fly(mission(2), Options(), 0) == {"group": "indifferent"}
-    assert suite.fly(mission(3), Options(), 0) == {"group": "reactive"}
+    monkeypatch.setattr(suite.driven, "run_mission", lambda *a, group, **more: {"group": group})
+    assert suite.run_mission(mission(2), Options(), 0) == {"group": "indifferent"}
+    assert suite.run_mission(mission(3), Options(), 0) == {"group": "reactive"}

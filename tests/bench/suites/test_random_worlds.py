@@ -171,13 +171,13 @@ def test_blocked_is_right_only_where_there_is_no_way_and_the_robot_says_so():
 
 
 def test_rows_count_blocked_rightly(monkeypatch):
-    def fly(scenario, options, mission, repeat, *, group, extra, **more):
+    def run_mission(scenario, options, mission, repeat, *, group, extra, **more):
         return {"outcome": "blocked", "group": group, **extra(episode("blocked", "blocked"))}
 
-    monkeypatch.setattr(suite.driven, "fly", fly)
+    monkeypatch.setattr(suite.driven, "run_mission", run_mission)
     missions = list(islice(suite.missions(Options()), 18))
     kept = [m for m in missions if not suite.leave_out(m, Options())]
-    rows = [suite.fly(m, Options(), 0) for m in kept]
+    rows = [suite.run_mission(m, Options(), 0) for m in kept]
     for row in rows:
         right = row["group"] == "unreachable"
         assert (row["outcome"] == "blocked_rightly") is right

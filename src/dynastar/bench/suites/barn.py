@@ -73,12 +73,12 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
     return driven.realistic(made, options)
 
 
-def fly(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
+def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
     """Drives a world; adds ``challenge_time`` and ``optimal_time``, s, to the row."""
     optimal_time = (
         official_length(data_folder(options, "barn", ARCHIVE), mission.number) / FULL_SPEED
     )
-    return driven.fly(
+    return driven.run_mission(
         scenario(mission, options, repeat),
         options,
         mission,

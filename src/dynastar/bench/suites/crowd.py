@@ -97,7 +97,7 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
     return driven.realistic(made, options)
 
 
-def fly(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
+def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
     """Drives a crossing; adds ``start_time`` (s) and ``contact_on_appearing`` to the row."""
     made = scenario(mission, options, repeat)
 
@@ -108,7 +108,7 @@ def fly(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
         }
 
     group = Path(mission.spec[0]).stem
-    return driven.fly(made, options, mission, repeat, group=group, extra=extra)
+    return driven.run_mission(made, options, mission, repeat, group=group, extra=extra)
 
 
 def contact_on_appearing(episode: Episode, movers: tuple[Mover, ...]) -> bool:

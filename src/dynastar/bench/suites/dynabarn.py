@@ -82,7 +82,7 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
     return driven.realistic(made, options)
 
 
-def fly(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
+def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
     """Drives a mission; adds ``start_time``, ``challenge_time``, ``contact_after_jump`` to the row."""
     data, made = _data(options), scenario(mission, options, repeat)
     optimal_time = float(np.hypot(*np.subtract(data.goal, data.start[:2]))) / FULL_SPEED
@@ -94,7 +94,7 @@ def fly(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
             "contact_after_jump": contact_after_jump(episode, made.movers),
         }
 
-    return driven.fly(
+    return driven.run_mission(
         made,
         options,
         mission,

@@ -153,14 +153,14 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
     return driven.realistic(rooms_with_fault, options)
 
 
-def fly(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
+def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
     """Drives a mission and judges what the robot did about the fault."""
     case, name, _ = mission.spec
-    flown = scenario(mission, options, repeat)
+    made = scenario(mission, options, repeat)
     if options.controller == "navigator":
         warm_up()  # here, so that the mission's own process has the kernels
     # A controller that raises or never returns has failed this case, too.
-    row = row_within(WALL_LIMIT, partial(_flown, flown, mission, options, repeat))
+    row = row_within(WALL_LIMIT, partial(_row, made, mission, options, repeat))
     episode = row.pop("episode", None)
     failed = {"group": case.name, "right": False, "stopped_in_time": False if case.stop else None}
     row = failed | {"robot": name} | row
@@ -169,18 +169,18 @@ def fly(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
     return row
 
 
-def _flown(flown: Scenario, mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
+def _row(made: Scenario, mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
     """The row of a mission, with its episode where that is to be observed."""
     case: Case = mission.spec.case
     episodes: list[Episode] = []
     asked = options._replace(observe=lambda *seen: episodes.append(seen[2]))
-    row = driven.fly(
-        flown,
+    row = driven.run_mission(
+        made,
         options if options.observe is None else asked,
         mission,
         repeat,
         group=case.name,
-        extra=partial(judged, case=case, latency=flown.latency),
+        extra=partial(judged, case=case, latency=made.latency),
     )
     return row | {"episode": episodes[0]} if episodes else row
 

@@ -66,10 +66,10 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
     return driven.realistic(made, options)
 
 
-def fly(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
+def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
     """Drives a mission."""
     made = scenario(mission, options, repeat)
-    return driven.fly(made, options, mission, repeat, group=Path(mission.spec).stem)
+    return driven.run_mission(made, options, mission, repeat, group=Path(mission.spec).stem)
 
 
 def _folder(options: Options) -> Path:

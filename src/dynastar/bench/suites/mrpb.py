@@ -73,10 +73,10 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
     return driven.realistic(made, options)
 
 
-def fly(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
+def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
     """Drives a test; adds ``time_near_obstacles`` and ``velocity_smoothness`` to the row."""
     test = _tests(options)[mission.number]
-    return driven.fly(
+    return driven.run_mission(
         scenario(mission, options, repeat),
         options,
         mission,

@@ -55,9 +55,11 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
     )
 
 
-def fly(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
+def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
     """Drives the office with one seed."""
-    return driven.fly(scenario(mission, options, repeat), options, mission, repeat, group="office")
+    return driven.run_mission(
+        scenario(mission, options, repeat), options, mission, repeat, group="office"
+    )
 
 
 def office_file(options: Options) -> Path:

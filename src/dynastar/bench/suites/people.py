@@ -108,10 +108,10 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
     )
 
 
-def fly(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
+def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
     """Drives a mission."""
     made = scenario(mission, options, repeat)
-    return driven.fly(made, options, mission, repeat, group=mode(mission.number))
+    return driven.run_mission(made, options, mission, repeat, group=mode(mission.number))
 
 
 @lru_cache(maxsize=8)

@@ -104,7 +104,7 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
     )
 
 
-def fly(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
+def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
     """Drives a mission; a ``blocked`` that is right has the outcome ``blocked_rightly``."""
     driven_scenario = scenario(mission, options, repeat)
     made = make(options.seed, mission.number)
@@ -114,7 +114,9 @@ def fly(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
     def extra(episode: Episode) -> Mapping[str, Any]:
         return verdict(episode, reachable)
 
-    return driven.fly(driven_scenario, options, mission, repeat, group=made.kind, extra=extra)
+    return driven.run_mission(
+        driven_scenario, options, mission, repeat, group=made.kind, extra=extra
+    )
 
 
 def verdict(episode: Episode, reachable: bool) -> dict[str, Any]:
