@@ -7,7 +7,7 @@ import math
 import os
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
@@ -162,12 +162,15 @@ def read_scenario(source: Mapping[str, Any], folder: Path, name: str) -> Scenari
 
 
 def run(
-    scenario: Scenario | str | Path, progress: bool = False, seed: int | None = None
+    scenario: Scenario | str | Path,
+    progress: bool = False,
+    seed: int | None = None,
+    navigator: Callable[..., simulation.Controller] | None = None,
 ) -> Episode:
     """Drives a scenario, or the one in a file, in simulation: see ``simulation.run``."""
     if not isinstance(scenario, Scenario):
         scenario = load_scenario(scenario)
-    return simulation.run(scenario, progress=progress, seed=seed)
+    return simulation.run(scenario, progress=progress, seed=seed, navigator=navigator)
 
 
 def _table(value: Any, where: str) -> dict[str, Any]:
