@@ -36,7 +36,7 @@ def folder() -> Path:
 
 
 def digest() -> str:
-    """What tells this version of the kernels from others."""
+    """Digest of the sources of all kernels: names the cache folder of this version."""
     found = hashlib.sha256()
     for source in sorted(Path(__file__).parent.rglob("*.py")):
         text = source.read_bytes()
@@ -130,7 +130,7 @@ def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
 
 @intrinsic
 def trailing_zeros(typing_context: Any, word: Any) -> Any:
-    """How many of a uint64's lowest bits are 0; the word must not be 0."""
+    """Number of trailing zero bits of a uint64 that is not 0."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return builder.cttz(args[0], ir.IntType(1)(1))
@@ -140,7 +140,7 @@ def trailing_zeros(typing_context: Any, word: Any) -> Any:
 
 @intrinsic
 def leading_zeros(typing_context: Any, word: Any) -> Any:
-    """How many of a uint64's highest bits are 0; the word must not be 0."""
+    """Number of leading zero bits of a uint64 that is not 0."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return builder.ctlz(args[0], ir.IntType(1)(1))

@@ -34,7 +34,7 @@ T = TypeVar("T")
 
 
 class Field(NamedTuple):
-    """What a setting means: one line of doc, its unit, and the smallest and largest legal value."""
+    """Description of a setting: one line of doc, its unit, and its smallest and largest legal value."""
 
     doc: str
     unit: str = ""

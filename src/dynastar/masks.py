@@ -13,7 +13,7 @@ from dynastar.grid import OCCUPIED_FROM, OccupancyGrid
 
 @self_checking
 class SpeedScale(NamedTuple):
-    """What the values of a speed mask, 0 to 100, mean: ``base + multiplier * value``."""
+    """Meaning of the values of a speed mask, 0 to 100: ``base + multiplier * value``."""
 
     type: Annotated[
         Literal["percent", "absolute"], Field("per cent of the robot's top speed, or m/s")

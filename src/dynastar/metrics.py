@@ -80,7 +80,7 @@ def mission_time(episode: Episode) -> float | None:
 
 
 def goals_reached(episode: Episode) -> int:
-    """How many goals, in their order, the robot's true position came within the tolerance of."""
+    """Number of goals, in order, within whose tolerance the robot's true position came."""
     goals = episode.goals[:, :2]
     if episode.outcome == "arrived":
         return len(goals)

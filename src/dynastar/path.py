@@ -113,7 +113,7 @@ class Path:
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """What was driven: ``times`` (n,) s, ``poses`` (n, 3) m and rad, ``twists`` (n, 2) m/s, rad/s."""
+    """A driven trajectory: ``times`` (n,) s, ``poses`` (n, 3) m and rad, ``twists`` (n, 2) m/s, rad/s."""
 
     times: Floats
     poses: Floats

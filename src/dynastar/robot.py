@@ -16,7 +16,7 @@ from dynastar.geometry import Pose2D, Twist, wrap_angle
 
 @self_checking
 class Limits(NamedTuple):
-    """What the drive can do; ``v_min`` is negative for a robot that may reverse."""
+    """Limits of the drive; ``v_min`` is negative for a robot that may reverse."""
 
     v_max: Annotated[float, Field("largest forward speed", "m/s", 0.01, 20.0)]
     omega_max: Annotated[float, Field("largest turning rate, either way", "rad/s", 0.01, 20.0)]

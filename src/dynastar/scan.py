@@ -40,7 +40,7 @@ class LaserScan:
         return np.asarray(self.angle_min + self.angle_increment * beams)
 
     def fault(self, beams: int | None = None) -> str | None:
-        """What makes this scan unusable, in words, or None; ``beams`` is the number expected."""
+        """Describe why this scan is unusable, or None; ``beams`` is the number expected."""
         n = len(self.ranges)
         if n == 0:
             return "the scan has no beams"

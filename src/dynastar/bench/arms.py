@@ -26,7 +26,7 @@ BASE_TERMS = "Eq. 2: all terms"  # what the default has
 
 
 class Arm(NamedTuple):
-    """How a mission is driven: a preset, what differs from it, or by path following alone."""
+    """An arm: a preset, settings that differ from it, or path following alone."""
 
     preset: Preset = "default"
     navigator: Mapping[str, Any] = {}

@@ -140,7 +140,7 @@ def _fill(solid: Mask, cells: Floats) -> None:
 
 
 def _digest(scenario: Scenario) -> str:
-    """What the shortest path depends on, as a digest."""
+    """Digest of everything that the shortest path depends on."""
     grid = scenario.grid if scenario.world is None else scenario.world
     footprint = scenario.robot.footprint
     digest = hashlib.sha256(np.ascontiguousarray(grid.values).tobytes())

@@ -94,7 +94,7 @@ def row_of_episode(
 
 
 def limited(episode: Episode, v_max: float) -> dict[str, float]:
-    """What limited the speed, and for how many seconds, the longest first.
+    """Causes that limited the speed, with their seconds, the longest first.
 
     A cause is what the controller names (``Episode.limits``); where it names none, its state
     ("state: waiting"), or "not named" while it follows the path at less than 95 % of ``v_max``.

@@ -21,7 +21,7 @@ Rows = Sequence[Mapping[str, Any]]
 
 
 class Asked(NamedTuple):
-    """How much of it, from which seed, into which folder, by so many processes.
+    """Extent of a report: number of maps and worlds, seed, folder, processes.
 
     ``settings`` of the navigator are over those of each preset, but below those of an arm.
     """
@@ -150,7 +150,7 @@ def report_ablation(asked: Asked) -> Report:
 
 
 def _columns(found: Mapping[str, Mapping[str, Any]]) -> list[Column]:
-    """What the ablation's picture shows: for each suite, the arms by the first one's effect."""
+    """Data of the ablation's picture: for each suite, the arms in the order of the first suite."""
     order = ablation.by_effect(next(iter(found.values())))
     shown: dict[str, tuple[Callable[[Mapping[str, Any]], float | None], str]] = {
         "arrived, %": (lambda of: 100.0 * of["arrived"] / of["missions"], ".0f"),
@@ -188,7 +188,7 @@ def report_figures(asked: Asked) -> Report:
 
 
 def report_targets(found: Mapping[str, Any]) -> Report:
-    """What the other reports found, beside what it should be."""
+    """Results of the other reports beside their targets."""
     table = targets.table(found)
     names = "target", "at_most", "measured", "outcome"
     return Report(

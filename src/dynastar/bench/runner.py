@@ -47,7 +47,7 @@ class Mission(NamedTuple):
 
 
 class Options(NamedTuple):
-    """What the command line asks of a suite; all of it reaches the worker processes.
+    """Options of a suite from the command line; all of them reach the worker processes.
 
     ``settings`` are the navigator's, as nested tables, over the preset's. ``observe`` is called with
     the suite's name and each mission that is driven, its repeat, its episode and its row.
@@ -68,7 +68,7 @@ class Options(NamedTuple):
 
 
 class Suite(Protocol):
-    """What a module has to have to be a suite.
+    """Interface of a module that is a suite.
 
     A suite that drives also has ``scenario(mission, options, repeat)``, the Scenario of a mission. It
     may have ``QUICK_MISSIONS``, how many missions ``--quick`` runs, ``PUBLISHED``, tuples of a label, a
@@ -77,7 +77,7 @@ class Suite(Protocol):
 
     @property
     def DEFAULT_MISSIONS(self) -> int | None:  # noqa: N802 - a constant of the module
-        """How many missions to run unless told otherwise; None for all there are."""
+        """Default number of missions; None for all."""
 
     def missions(self, options: Options) -> Iterable[Mission]:
         """All missions, numbers rising, perhaps without end; cheap to make and to pickle."""
@@ -103,7 +103,7 @@ class Slice(NamedTuple):
     step: int
 
     def until(self, number: int) -> range:
-        """Those of the numbers that are below ``number``."""
+        """Numbers of the slice below ``number``."""
         return range(self.start, number if self.stop is None else min(self.stop, number), self.step)
 
 
@@ -223,7 +223,7 @@ class Job(NamedTuple):
 
     @property
     def key(self) -> tuple[str, int, int]:
-        """What tells it from other jobs."""
+        """Digest that identifies the job."""
         name = self.suite if isinstance(self.suite, str) else ""
         return (name, self.mission.number, self.repeat)
 
@@ -275,7 +275,7 @@ def result_of(
     skipped: int,
     wall: float,
 ) -> dict[str, Any]:
-    """What a suite came to, as JSON has it; ``wall_s`` is the missions' wall time together."""
+    """Result of a suite for JSON; ``wall_s`` is the missions' wall time together."""
     published = getattr(suite, "PUBLISHED", ())
     return {
         "suite": name,

@@ -66,7 +66,7 @@ def rightly_blocked(row: Row) -> bool:
 
 
 def totals(rows: Sequence[Row], skipped: int) -> dict[str, Any]:
-    """What a suite's rows add up to, for each group, too, and the ``rows`` themselves.
+    """Totals of a suite's rows, also for each group, and the ``rows`` themselves.
 
     Means and ``time_ratio`` are over the missions that arrived; None where there is nothing to
     average. ``score`` is over all missions, 0 for one that has none, and None for a suite without.

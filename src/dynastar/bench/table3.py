@@ -89,7 +89,7 @@ def turning_ratio(row: Row) -> float:
 
 
 def summary(rows: Sequence[Row]) -> dict[str, Any]:
-    """What the rows add up to: outcomes of all missions, and the hybrid over the improved A*'s way.
+    """Totals of the rows: outcomes of all missions, and the hybrid over the improved A*'s path.
 
     Ratios and means are over the missions that arrived, whether that way is free or not; None if
     none did.

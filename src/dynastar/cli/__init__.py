@@ -28,7 +28,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _say(str(error), 2 if isinstance(error, InputError) else 1)
     except KeyboardInterrupt:
         return _say("interrupted", INTERRUPTED)
-    except BrokenPipeError:  # whoever read our output has left: nothing to add
+    except BrokenPipeError:  # the reader of the output has closed it: nothing to add
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return BROKEN_PIPE
     except OSError as error:  # a folder that cannot be written, a full disk

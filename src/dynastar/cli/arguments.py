@@ -159,7 +159,7 @@ class OneLineParser(argparse.ArgumentParser):
 
 
 def _unknown(word: str, options: "Iterable[str]") -> str:
-    """What is wrong with an argument that no option takes."""
+    """Describe an argument that no option takes."""
     if word.startswith("-"):
         option = word.partition("=")[0]
         return f"unknown option '{option:.80}'{nearest(option, options)}"
@@ -311,7 +311,7 @@ def _add_info(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
         "info",
         help="what a map, a scenario or an episode holds",
         description="Says what a map, a scenario or an episode holds: extent, resolution, how much is "
-        "free, who drives where, what came of it.",
+        "free; robot, start and goals; the result.",
         epilog=INFO_EXAMPLES,
     )
     info.add_argument("file", metavar="FILE", type=path, help="a map, .toml or .npz")

@@ -119,7 +119,7 @@ def _compare(arguments: argparse.Namespace) -> int:
 
 
 def _options(arguments: argparse.Namespace) -> Options:
-    """What the arguments ask of a suite, checked as far as that can be done without running it."""
+    """The options of a suite from the arguments, checked before it is run."""
     controller_named(arguments.controller)
     observe = None
     if arguments.save_failures is not None:

@@ -65,7 +65,7 @@ def _wait(children: "list[subprocess.Popen[bytes]]") -> None:
 
 
 def plan_and_simulate() -> None:
-    """What planners, the simulator and the suites that draw worlds call."""
+    """Compile the kernels of planners, simulator and suites."""
     from dynastar.bench.suites import people, random_worlds
     from dynastar.planning import warm_up_all
     from dynastar.simulation import warm_up
@@ -78,7 +78,7 @@ def plan_and_simulate() -> None:
 
 
 def drive() -> None:
-    """What a navigator calls besides."""
+    """Compile the kernels of the navigator."""
     from dynastar.dwa.config import SEARCHES
     from dynastar.navigator.navigator import warm_up
 

@@ -72,7 +72,7 @@ def rests_in_time(scene, body, limits, state, command, period):
     """ADMISSIBLE if the robot is at rest before any moving obstacle can touch it.
 
     A track is somewhere in the disc round its constant-velocity prediction that its acceleration
-    lets it reach; somebody unseen comes out of unseen space at ``hidden_speed``. Where rest does
+    lets it reach; a person may step out of unseen space at ``hidden_speed``. Where rest does
     not keep clear of that disc, the robot may move if it comes no nearer than at rest.
     """
     pose, v, omega = state

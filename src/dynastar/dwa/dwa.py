@@ -38,7 +38,7 @@ class Body(NamedTuple):
 
 
 class Span(NamedTuple):
-    """How long samples are held and looked ahead, in steps of ``step`` seconds.
+    """Times of the roll-outs, in steps of ``step`` seconds.
 
     Held for ``steps`` or ``long_steps``, rolled out for ``horizon_steps``; risk is that of a disc of
     ``risk_radius`` (m). ``comfort`` (m) and ``hysteresis`` as in ``DwaConfig``.
@@ -54,7 +54,7 @@ class Span(NamedTuple):
 
 
 class Rules(NamedTuple):
-    """What a robot's candidates are judged by: its shape, limits, span, weights (Eq. 9), period (s).
+    """Rules for evaluating candidates: shape, limits, span, weights (Eq. 9), period (s).
 
     ``by_bearing`` tells whether heading is the bearing of the target, and not the progress.
     """
@@ -80,7 +80,7 @@ def body_of(robot: Robot) -> Body:
 
 @dataclass(frozen=True)
 class Choice:
-    """What a tick considered: the command, the manoeuvre behind it and what is left of that.
+    """Result of a tick: the command, its manoeuvre and the rest of that manoeuvre.
 
     ``samples`` (n, 2), ``refused`` (n,) codes (0 admissible), ``terms`` (n, 5) and ``score`` (n,) are
     copies; samples that were dropped early score -inf. ``limited_by`` says what kept it from being
@@ -187,7 +187,7 @@ class DynamicWindow:
         refused: npt.NDArray[np.int64],
         v_cap: float,
     ) -> str:
-        """What kept a choice from being faster, in words, or "" at full speed."""
+        """Name what limited the speed of a choice, "" at full speed."""
         limits = self.robot.limits
         if chosen is None:
             return "no admissible command"

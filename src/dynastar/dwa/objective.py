@@ -21,7 +21,7 @@ def progress(gained, scale):
     """Decrease of the cost-to-go over a trajectory (m) over the most it could be (``scale``, m).
 
     From -1 to 1: to be driven off near the goal is no worse than anywhere else, and to get out of
-    somebody's way is worth no more than to drive on.
+    the path of a moving obstacle scores no more than driving on.
     """
     return min(max(gained / scale, -1.0), 1.0)
 
@@ -58,7 +58,7 @@ def objective(weights, terms):
 
 @njit(cache=True)
 def contact_probability(gap, spread):
-    """How likely two discs touch whose predicted gap (m) is off by a deviation of ``spread`` (m).
+    """Probability that two discs touch whose predicted gap (m) has a deviation of ``spread`` (m).
 
     The normal distribution's tail, by its logistic approximation.
     """

@@ -112,7 +112,7 @@ def tail_speeds(field, limits, comfort, pose, v, clear, tail):
 
 @njit(cache=True)
 def touches(people, k, x, y, radius):
-    """Whether a disc of ``radius`` (m) at (x, y) may touch somebody who keeps on, at step ``k``."""
+    """Whether a disc of ``radius`` (m) at (x, y) may touch an unaccelerated obstacle at step ``k``."""
     for m in range(len(people.now)):
         dx, dy = people.mean[m, 0, k, 0] - x, people.mean[m, 0, k, 1] - y
         near = radius + people.now[m, 4] + people.now[m, 5]

@@ -45,7 +45,7 @@ AT_REST = Manoeuvre(0.0, 0.0, 0.0, STOP)
 
 
 class Scene(NamedTuple):
-    """What a window is judged against.
+    """The scene against which a window is evaluated.
 
     ``closed`` are distances to what is not observed free, ``obstacles`` to what is occupied.
     ``margin`` (m) is kept from both, ``kept`` from the former where the robot stands nearer than

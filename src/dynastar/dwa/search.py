@@ -51,7 +51,7 @@ def search(scene, rules, state, n, buffers):
     """Scores the admissible of ``n`` samples by Eq. 9 and returns the best, or -1.
 
     Where a command does not rest in time before moving obstacles, a manoeuvre that begins with it is
-    admissible only if it passes clear of everybody who keeps on.
+    admissible only if it passes clear of all moving obstacles at constant velocity.
 
     Two more candidates are written behind them: what the manoeuvre chosen last would do now (n),
     looked at first, and following the cost-to-go at once (n + 1). Every change from the former has

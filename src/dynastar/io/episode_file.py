@@ -223,7 +223,7 @@ def _split(arrays: Arrays, points: str, rows: str) -> tuple[npt.NDArray[Any], ..
 
 
 def _plain(value: Any) -> Any:
-    """What JSON does not know by itself: NumPy's numbers and arrays."""
+    """Convert NumPy's numbers and arrays for JSON."""
     if isinstance(value, np.generic | np.ndarray):
         return value.tolist()
     raise TypeError(f"a header cannot hold a {type(value).__name__}")

@@ -142,7 +142,7 @@ def _levels(
 
 
 def _values_by_level(full: int, header: MapHeader) -> npt.NDArray[np.int8]:
-    """What each brightness from 0 to ``full`` means, int8 [full + 1]."""
+    """Occupancy for each brightness from 0 to ``full``, int8 [full + 1]."""
     shade = np.arange(full + 1) / full
     if header.mode == "raw":
         raw = np.floor(255.0 * shade + 0.5)

@@ -86,7 +86,7 @@ def _optional(schema: Schema) -> Schema:
 
 
 def _value(hint: Any, field: Field | None = None) -> Schema:
-    """What a value of a declared type looks like."""
+    """Schema of a value of a declared type."""
     if get_origin(hint) is Annotated:
         hint, *notes = get_args(hint)
         field = next((note for note in notes if isinstance(note, Field)), field)

@@ -61,7 +61,7 @@ def _lesser(measured: float, commanded: float) -> float:
 
 
 class Commands:
-    """What was sent: where that takes the robot until a new command acts, and the stop behind it."""
+    """Commands under way: the motion until a new command acts, and the certified stop after it."""
 
     def __init__(self, limits: Limits, period: float, latency: float) -> None:
         self.limits, self.period, self.latency = limits, period, latency

@@ -39,7 +39,7 @@ class Mission:
         self.state, self.reason = ("following" if self.goals else "idle"), reason
 
     def say(self, state: State, reason: str) -> None:
-        """What the robot does now, while the mission is under way."""
+        """Set the state while the mission is under way."""
         if self.state not in OVER:
             self.state, self.reason = state, reason
 

@@ -96,7 +96,7 @@ class Navigator:
 
     @property
     def status(self) -> Status:
-        """What the navigator is doing and why: a copy, as of the last command."""
+        """State of the navigator and its reason: a copy, as of the last command."""
         mission, route, choice = self.mission, self.route, self._choice
         return Status(
             mission.state,
@@ -138,7 +138,7 @@ class Navigator:
     def follow(self, path: Path | npt.ArrayLike, heading: float | None = None) -> None:
         """Drives along a path (n, 2), metres, to its end and to a ``heading`` there, if given (rad).
 
-        Nothing is planned. What stands on the path is gone round within the local map, and waited for
+        Nothing is planned. Obstacles on the path are passed within the local map, and waited for
         where that cannot be done. Loops that are shorter than what the robot drives within
         ``dwa.horizon`` are cut. Raises InputError for a path without points or not finite.
         """
@@ -225,7 +225,7 @@ class Navigator:
     def _scene(
         self, state: RobotState, pose: Pose2D, movers: Sequence[MovingObstacle] | None
     ) -> Scene:
-        """What the window is judged against, as of the time from which a command acts."""
+        """The scene for the window at the time when a command takes effect."""
         config, limits, local = self.config, self.robot.limits, self.sensing.local_map
         span = self.window.span
         occupied = self.planning_map.stands_in(local)

@@ -60,7 +60,7 @@ class PlanningMap:
 
     @property
     def blocked(self) -> Mask:
-        """What stands in the way: the map's and the seen."""
+        """Blocked cells: of the map and of what was sensed."""
         return (self.prior & ~self.cleared) | self.seen
 
     def take_in(self, layer: LocalMap) -> bool:
@@ -82,7 +82,7 @@ class PlanningMap:
         return stands
 
     def on_free_ground(self, points: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        """Those of the points (n, 2 or more), metres, where the map has nothing."""
+        """Select the points (n, 2 or more), metres, on free cells of the map."""
         cells = np.floor(self.frame.points_to_grid(points[:, :2])).astype(np.int64)
         inside = ((cells >= 0) & (cells < self.prior.shape)).all(axis=1)
         rows, columns = cells[inside].T

@@ -58,7 +58,7 @@ class Route:
         )
 
     def lead(self, ahead: float) -> Lead:
-        """What leads the robot: the path, or where it waits for one; of a given one ``ahead`` m."""
+        """The path to follow, or the pose at which to wait for one; of a given path ``ahead`` m."""
         if self.path is None:
             return Lead(self._stand, 0.0, math.inf)
         return Lead(self.path, self.s, math.inf if self._given is None else ahead)

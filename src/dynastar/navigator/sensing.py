@@ -47,7 +47,7 @@ class Sensing:
         return max(self._seen.values(), default=-math.inf)
 
     def set_grid(self, grid: OccupancyGrid) -> None:
-        """The map, for its keep-out cells and for what stands at the start."""
+        """The map, for its keep-out cells and for its obstacles at the start."""
         self.local_map.set_grid(grid)
 
     @property
@@ -130,7 +130,7 @@ class Sensing:
         ]
 
     def unseen(self, occupied: npt.NDArray[np.bool_], now: float) -> Hidden:
-        """Where somebody may be hidden; ``occupied`` (n, n) are the local map's obstacles."""
+        """Places where a person may be hidden; ``occupied`` (n, n) are the local map's obstacles."""
         local = self.local_map
         seen = local.free_at >= now - SEEN_NOW
         return self.hidden.update((local.row0, local.column0), seen, occupied, now)

@@ -27,7 +27,7 @@ class RobotState(NamedTuple):
 
 @dataclass(frozen=True)
 class Status:
-    """What the navigator is doing and why, and what its last tick considered.
+    """State of the navigator, its reason, and the result of its last tick.
 
     ``plan_id`` rises with every new plan; the plan's cells belong to ``planning_frame``. ``replans``
     counts plans after the first for a goal. ``limited_by`` says what kept the last command from being

@@ -21,7 +21,7 @@ from dynastar.scan import LaserScan
 LENGTH, WIDTH, CELL = 12.0, 8.0, 0.2  # m, of a room with nothing on its map
 TICKS, TURNING, PERIOD = 30, 3, 0.1  # s
 BOX = (5.0, 4.0, 0.4)  # x, y, radius in metres of what stands in the way
-WALKER = (8.0, 2.5, 0.3)  # the same, at the beginning, of somebody who walks towards the robot
+WALKER = (8.0, 2.5, 0.3)  # the same, at the beginning, of a person who walks towards the robot
 PACE = 1.0  # m/s
 BEAMS = 360
 
@@ -31,7 +31,7 @@ Point = tuple[float, float]
 
 
 class Driver(Protocol):
-    """What a Navigator is here."""
+    """The interface of Navigator that the warm-up uses."""
 
     def set_goal(self, goal: Sequence[float]) -> None:
         """Takes a goal."""
@@ -61,7 +61,7 @@ def drive_a_little(driver: Driver) -> None:
 
 
 def _scan(pose: Pose2D, stamp: float) -> LaserScan:
-    """What a lidar at ``pose`` sees of the room's walls, the box and the walker."""
+    """Scan of a lidar at ``pose`` of the walls, the box and the walker."""
     increment = math.tau / BEAMS
     angles = pose.theta - math.pi + increment * np.arange(BEAMS)
     along = np.stack([np.cos(angles), np.sin(angles)])
@@ -77,7 +77,7 @@ def _scan(pose: Pose2D, stamp: float) -> LaserScan:
 def _to_disc(
     centre: npt.NDArray[np.float64], along: npt.NDArray[np.float64], radius: float
 ) -> npt.NDArray[np.float64]:
-    """How far (m) beams (2, n) go to a disc about ``centre`` (2, 1), from the sensor; inf past it."""
+    """Ranges (m) of beams (2, n) to a disc about ``centre`` (2, 1); inf for a miss."""
     ahead = (centre * along).sum(axis=0)
     half_chord = radius**2 - ((centre**2).sum(axis=0) - ahead**2)
     meets = (ahead > 0.0) & (half_chord > 0.0)

@@ -103,7 +103,7 @@ def fit_disc(
 def find_owners(
     points: Floats, sensor: Sensor, known: Known, space: SeenFree, discs: Floats
 ) -> tuple[Integers, Mask]:
-    """What each point (n,) belongs to, and whether it lies in space that was seen free.
+    """Object of each point (n,), and whether the point lies in space that was seen free.
 
     An owner is MAPPED, NOBODY or the nearest of ``discs`` (k, 5); in the outer half of a disc's margin
     only points in space that was seen free are its own. A surface that stands may lie in a cell that

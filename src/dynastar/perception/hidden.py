@@ -1,4 +1,4 @@
-"""Where somebody may be hidden: unseen space as a distance field of possible bodies.
+"""Occlusion: unseen space as a distance field of possible bodies.
 
 A cell is cleared while nobody can have come to it since it was last seen: until the time of the scan
 plus the distance to the nearest possible body, over ``hidden_speed``. Bodies of a radius fit where
@@ -17,7 +17,7 @@ from dynastar.compiled import njit
 Floats = npt.NDArray[np.float32]
 
 HIDDEN_RADIUS = 0.25  # m, of a body that unseen space may hold
-SLACK = 0.1  # m that somebody may come nearer than the promise has it before a robot stands
+SLACK = 0.1  # m by which a person may come nearer than promised before the robot is at rest
 FACTOR = 2  # cells of the local map to one of this field
 
 

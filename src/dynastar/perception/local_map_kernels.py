@@ -19,7 +19,7 @@ ARCTAN_ERROR = 1.5e-8  # rad
 
 @njit(cache=True)
 def free_ranges(ranges, limits, increment, full_circle, errors, narrowest):
-    """How far space is observed free in the gap between beam i and beam i + 1, metres (n,).
+    """Range (m) up to which space is observed free between beam i and beam i + 1, (n,).
 
     As far as the shorter of the two, less the error of a range and half the gap (a corner may stand
     out that far between two beams), while the gap is narrower than the narrowest obstacle. A

@@ -77,7 +77,7 @@ class PastScans:
         self._kept = [one for one in kept if now - one[0] <= MEMORY]
 
     def since(self, stamp: float) -> SeenFree:
-        """What was seen free after ``stamp`` (s)."""
+        """Space that was seen free after ``stamp`` (s)."""
         kept = self._kept
         ranges = np.zeros((len(kept), max((len(r) for _, _, r in kept), default=0)))
         for row, (_, _, own) in zip(ranges, kept, strict=True):

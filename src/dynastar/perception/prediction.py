@@ -22,7 +22,7 @@ WEIGHTS = np.array([0.7, 0.2, 0.1])
 
 @self_checking
 class PredictionConfig(NamedTuple):
-    """How moving obstacles are predicted."""
+    """Settings of the prediction of moving obstacles."""
 
     acceleration: Annotated[
         float, Field("largest acceleration of a moving obstacle", "m/s2", 0.0, 20.0)

@@ -12,7 +12,7 @@ Mask = npt.NDArray[np.bool_]
 
 
 def reach_of_escape(radius: float) -> int:
-    """How many cells away a way out is looked for, for a footprint of ``radius`` cells."""
+    """Number of cells within which a way out is searched, for a footprint of ``radius`` cells."""
     return math.ceil(4.0 * radius) + 4
 
 

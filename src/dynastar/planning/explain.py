@@ -102,7 +102,7 @@ def parted(
 
 
 def _kind(grid: OccupancyGrid, cell: tuple[int, int]) -> str:
-    """What blocks a cell."""
+    """Name what blocks a cell."""
     if grid.occupied[cell]:
         return "an obstacle"
     if grid.keepout is not None and grid.keepout[cell]:

@@ -46,7 +46,7 @@ MOST_RADIUS = 100.0  # m
 
 @self_checking
 class PlannerConfig(NamedTuple):
-    """How a path is found and what is made of it."""
+    """Settings of the search and the smoothing of a path."""
 
     planner: Annotated[str, Field("dijkstra, astar, jump, auto, weighted or improved")] = "improved"
     heuristic: HeuristicConfig = HeuristicConfig()
@@ -64,7 +64,7 @@ class PlannerConfig(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """What a planner found.
+    """The result of a planner.
 
     ``path`` is smoothed, ``grid_path`` the way over the cells' centres; both lie in the map frame,
     in metres, and run exactly from start to goal. ``cells`` (n, 2) are the way's cells and ``cost``
@@ -288,7 +288,7 @@ class GridPlanner:
         return None
 
     def _too_close(self, point: Point) -> str:
-        """What is wrong with a point that the disc does not fit at, in words."""
+        """Describe why the disc does not fit at a point."""
         x, y = self.grid.frame.to_world(*point)
         if self._blocked[int(point[0]), int(point[1])]:
             return f"({x:g}, {y:g}) lies in an obstacle"

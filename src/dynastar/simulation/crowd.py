@@ -146,7 +146,7 @@ class Crowd:
         )
         try:
             self._robot = self._simulation.add_agent(parameters)
-        except RuntimeError:  # it stands in somebody: try again in the next step
+        except RuntimeError:  # it overlaps a pedestrian: try again in the next step
             return
         model = self._simulation.agent(self._robot).model
         model.time_gap, model.radius = ROBOT_TIME_GAP, self._robot_radius

@@ -123,7 +123,7 @@ class FaultInjector:
                 self._event("fault", f"{fault.kind} ends")
 
     def sensed(self, state: RobotState, scan: LaserScan) -> Sensed:
-        """What the controller gets of a true state and scan."""
+        """State and scan as the controller receives them."""
         if not self._faults:
             return state, scan
         delivered: Sensed = (state, scan)
@@ -135,7 +135,7 @@ class FaultInjector:
         return delivered
 
     def carried(self, command: Twist) -> Twist:
-        """What reaches the drive when the controller says ``command``."""
+        """Command that reaches the drive after a controller's ``command``."""
         now = self._world.time
         self._sent.append((now, command))
         delay = max((f.size for f in self._active if f.kind == "commands_late"), default=0.0)

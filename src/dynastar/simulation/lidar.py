@@ -46,7 +46,7 @@ class LidarSimulator:
         self._edges = np.concatenate([self._edges, edges_of(ring)])
 
     def scan(self, pose: Pose2D, stamp: float, discs: Floats = NO_DISCS) -> LaserScan:
-        """What the lidar of a robot at ``pose`` reads; ``discs`` (m, 3) are x, y, radius in metres.
+        """Scan of a lidar of a robot at ``pose``; ``discs`` (m, 3) are x, y, radius in metres.
 
         +inf is nothing within range_max; readings below range_min are given as they are.
         """

@@ -26,7 +26,7 @@ GRACE = 5.0  # s to come to rest after the last word, on top of the stopping tim
 
 
 class Controller(Protocol):
-    """What drives a robot here: ``dynastar.Navigator``, or anything that is called the same way.
+    """A controller in simulation: ``dynastar.Navigator``, or anything with the same interface.
 
     ``status`` needs ``state``, ``reason``, ``recoveries``, ``plan``, ``plan_id``, ``plan_reason``,
     ``planning_frame`` and ``error`` as the Navigator's has them; ``plan`` may stay None. An optional

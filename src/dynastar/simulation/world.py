@@ -27,7 +27,7 @@ RESTING = 0.02  # m/s and rad/s under which a contact happens at rest
 
 
 class World:
-    """What is true of the robot: ``time`` (s), ``pose``, ``twist``, ``clearance`` (m), ``contact``.
+    """True state of the robot: ``time`` (s), ``pose``, ``twist``, ``clearance`` (m), ``contact``.
 
     The drive ramps both speeds, each on its own, towards the command that was given at least
     ``scenario.latency`` ago. ``clearance`` is the smallest gap between footprint and anything since
@@ -81,7 +81,7 @@ class World:
         return scripted if self._crowd is None else np.vstack([scripted, self._crowd.at(self.time)])
 
     def scan(self) -> LaserScan:
-        """What the lidar reads now."""
+        """The present scan."""
         discs = np.column_stack([self.movers, self.mover_radii])
         return self._lidar.scan(self.pose, self.time, discs)
 
@@ -130,7 +130,7 @@ class World:
 
     @property
     def limits(self) -> Limits:
-        """What the drive can do."""
+        """The limits of the drive."""
         return self._robot.limits
 
     def _drive(self, until: float) -> Twist:

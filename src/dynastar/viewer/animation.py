@@ -133,7 +133,7 @@ def background(episode: Episode) -> Canvas:
 
 
 def _draw_key(canvas: Canvas, episode: Episode) -> None:
-    """What the colours mean, in the lower strip, as far as it fits."""
+    """The legend, in the lower strip, as far as it fits."""
     entries = [("robot and its way", palette.DRIVEN), ("plan", palette.FIRST_PATH)]
     if len(episode.mover_radii):
         entries.append(("mover", palette.MOVER))

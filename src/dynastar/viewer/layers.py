@@ -138,7 +138,7 @@ def show_tracks(axes: Axes, movers: "Sequence[Mover]") -> list[Artist]:
 
 
 def show_movers(axes: Axes, episode: Episode, view: View) -> list[Artist]:
-    """What moves: a disc where it was nearest to the robot, and its track in dots."""
+    """Movers: a disc where each was nearest to the robot, and its track as dots."""
     driven = episode.trajectory
     spacing = view.diagonal / 130.0
     discs, dots = [], []

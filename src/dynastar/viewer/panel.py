@@ -73,7 +73,7 @@ def say(figure: Figure, axes: Axes, words: str, title: str = "") -> None:
 
 
 def legend(figure: Figure, entries: Sequence[Artist], columns: int) -> None:
-    """What the colours mean, along the sheet's lower edge."""
+    """The legend, along the lower edge of the sheet."""
     place = (0.5, 0.05 / figure.get_figheight())
     style = legend_style()
     figure.legend(

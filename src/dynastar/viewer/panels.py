@@ -129,7 +129,7 @@ def draw_unaware(
 
 
 def draw_driven(episode: Episode, width: float = COLUMN) -> Figure:
-    """What the hybrid drove (Fig. 7): first plan, plans after it, movers' tracks, the driven line."""
+    """The run of the hybrid (Fig. 7): first plan, plans after it, movers' tracks, the driven line."""
     figure, axes = map_sheet(episode.grid, width, 4)
     view = known_view(episode.grid)
     layers.show_obstacles(axes, episode.obstacles)

@@ -52,7 +52,7 @@ def plain(axes: Axes, size: float = SMALL) -> None:
 
 
 def legend_style(size: float = SMALL) -> dict[str, Any]:
-    """What a legend without a frame takes by name."""
+    """Keyword arguments of a legend without a frame."""
     return {
         "frameon": False,
         "fontsize": size,

@@ -174,7 +174,7 @@ class PathController(ABC):
     # -- data and commands ------------------------------------------------------------------------
 
     def _fault(self, state: RobotState, scan: LaserScan | None) -> str | None:
-        """What is wrong with the data of this tick, in words, or None."""
+        """Describe why the data of this tick are unusable, or None."""
         if not all(map(math.isfinite, (state.stamp, *state.pose, *state.twist))):
             return "the robot's state is not finite"
         if self._poses and state.stamp < self._poses[-1].stamp:

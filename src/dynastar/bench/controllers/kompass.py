@@ -19,7 +19,7 @@ HEIGHT = 0.1  # m, of the obstacles' points; the robot's body is taller
 
 
 class Settings(NamedTuple):
-    """What kompass-core is told; weights, samples, prediction and lookahead are its own defaults."""
+    """Settings of kompass-core; weights, samples, prediction and lookahead are its defaults."""
 
     horizon: float = 1.0  # s of prediction
     step: float = 0.1  # s between the points of a prediction

@@ -9,7 +9,7 @@ from dynastar.planning import Plan
 
 @dataclass(frozen=True)
 class Status:
-    """What the simulation reads of a controller after each command.
+    """Status of a controller as the simulation reads it after each command.
 
     ``state`` and ``reason`` say what it does; ``plan_id`` rises with every new ``plan``, whose cells
     belong to ``planning_frame``; ``error`` is why no plan could be made where that ended the mission;

@@ -14,7 +14,7 @@ FULL_SPEED = 2.0  # m/s, for which the optimal time is
 
 
 class ChallengeRun(NamedTuple):
-    """What the challenge measures: ``seconds`` on its clock, and whether the run succeeded."""
+    """Result of the challenge: ``seconds`` on its clock, and whether the run succeeded."""
 
     success: bool
     seconds: float | None

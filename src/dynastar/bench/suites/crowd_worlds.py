@@ -120,7 +120,7 @@ def with_walk_in(recording: Recording, grid: OccupancyGrid) -> Recording:
 def _walk_in(
     grid: OccupancyGrid, field: npt.NDArray[np.float32], first: Floats, velocity: Floats
 ) -> tuple[float, Floats]:
-    """How long a pedestrian walks in, s, and at which velocity (2,)."""
+    """Time (s) for which a pedestrian walks in, and its velocity (2,)."""
     times = np.arange(0.1, WALK_IN + 0.05, 0.1)
     best, best_way = 0.0, velocity
     for angle in TURNS:

@@ -99,7 +99,7 @@ CASES = (
 
 
 class Strike(NamedTuple):
-    """What one mission is: a case, a robot by name, and the strike's fraction of the way."""
+    """A mission: a case, a robot by name, and the fraction of the path at which the fault strikes."""
 
     case: Case
     robot: str

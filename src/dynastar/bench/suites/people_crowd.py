@@ -2,7 +2,7 @@
 
 They take the same roles as scripted walkers (see ``people_scripts``) and walk their routes to and fro,
 but JuPedSim moves them. A world is kept only if a simple robot gets through: it drives its way at no
-more than full speed, turns on the spot at corners, stops while somebody is near ahead, creeps on after
+more than full speed, turns on the spot at corners, stops while a person is near ahead, creeps on after
 a while if they stay there but leave 0.2 m, and arrives in time with 2 cm or more to everybody. It must
 also stand at its start for ``STAND`` seconds untouched.
 """
@@ -106,7 +106,7 @@ def gets_through(
 
 
 class _SimpleDriver:
-    """Follows a way within the robot's limits; stops while somebody is near ahead."""
+    """Follows a way within the robot's limits; stops while a person is near ahead."""
 
     def __init__(self, site: Site, robot: Robot) -> None:
         self._points, self._robot = site.way.points, robot
@@ -152,7 +152,7 @@ class _SimpleDriver:
                 self._next += 1
 
     def _somebody_ahead(self, centres: Floats, radii: Floats, room: float) -> bool:
-        """Whether somebody is within ``room`` m of where the robot would stop."""
+        """Whether a person is within ``room`` m of where the robot would stop."""
         x, y, theta = self.pose
         reach, limits = self._robot.footprint.circumscribed, self._robot.limits
         ahead = reach + room + self._speed * STEP + 0.5 * self._speed**2 / limits.v_brake

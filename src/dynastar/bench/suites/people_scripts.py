@@ -36,7 +36,7 @@ MOST_WALKERS = 10
 WALL_GAP = 0.03  # m
 PLAN_GAP = 0.08  # m, kept where a route is planned
 START_GAP, START_TIME = 0.5, 3.0  # m, s
-PAIRS = 0.2  # of the walkers have somebody beside them
+PAIRS = 0.2  # of the walkers walk in pairs
 TRIES = 4
 
 MANNERS = ("steady", "varying", "pausing", "reversing")
@@ -51,7 +51,7 @@ class Route(NamedTuple):
 
 
 class Scene(NamedTuple):
-    """What routes are drawn for: the place, the robot in it, and a planner for one walker's disc."""
+    """Input of a route: the place, the robot in it, and a planner for the disc of a walker."""
 
     site: Site
     robot: Robot
@@ -295,7 +295,7 @@ def _beyond(scene: Scene, begin: Point, direction: float, most: float) -> Point:
 
 
 def _at_start(walkers: list[Mover], site: Site, robot: Robot) -> bool:
-    """Whether somebody comes too near to the robot's start in the first seconds."""
+    """Whether a person comes too near to the robot's start in the first seconds."""
     reach = robot.footprint.circumscribed + START_GAP
     for walker in walkers:
         early = walker.points[walker.times <= START_TIME]

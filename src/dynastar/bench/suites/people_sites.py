@@ -44,7 +44,7 @@ class Site:
 
     @cached_property
     def area(self) -> shapely.Geometry:
-        """What is free, as a polygon in metres."""
+        """Free space as a polygon in metres."""
         return walkable_area(self.grid, ())
 
     @cached_property

@@ -111,7 +111,7 @@ def draw_system(width: float = PAGE) -> Figure:
 
 
 def _show_flow(axes: Axes) -> None:
-    """What goes where, tick by tick."""
+    """The data flow of a tick."""
     b = BLOCKS
     for left, right in pairwise(("map", "planning map", "search", "smooth", "path")):
         _arrow(axes, ((b[left].right, A), (b[right].left, A)))
@@ -134,7 +134,7 @@ def _show_flow(axes: Axes) -> None:
 
 
 def _show_feedback(axes: Axes) -> None:
-    """What comes back when something is wrong."""
+    """The feedback on faults."""
     search, recovery, watch = (BLOCKS[k] for k in ("search", "recovery", "watch"))
     middle, at = 0.5 * (watch.top + search.low), 0.3
     _arrow(axes, ((watch.left, B), (recovery.right, B)), wrong=True)
