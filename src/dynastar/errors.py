@@ -34,7 +34,9 @@ class MissingPackage(DynastarError, ImportError):  # noqa: N818
 
 
 class PlanningError(DynastarError):
-    """A plan cannot be made."""
+    """A plan cannot be made; ``radius`` is the disc's in metres, if a planner says so."""
+
+    radius: float | None = None
 
 
 class OutOfMap(PlanningError, InputError):  # noqa: N818 - the name says it

@@ -26,12 +26,14 @@ def explained(
     radius: float,
     unknown: Unknown,
 ) -> PlanningError:
-    """An error of the same kind that says what would help, or the same where nothing more is found.
+    """An error of the same kind that says what would help, or the same if nothing more is found.
 
-    For a point where a disc of ``radius`` metres does not fit: what is there, and the nearest place
-    where it fits. For two points that nothing connects: the widest disc that would pass, and where.
+    For a point where the disc does not fit: what is there, and the nearest place where it fits. For
+    two points that nothing connects: the widest disc that would pass, and the narrowest place.
+    ``radius`` (m) is that of the disc, unless the error has one.
     """
     words = None
+    radius = radius if error.radius is None else error.radius
     if isinstance(error, StartOccupied):
         words = misfit(grid, "the start", start, radius, unknown)
     elif isinstance(error, GoalOccupied):
@@ -157,7 +159,9 @@ def _widest(
             low, high = (middle, high) if _connected(field >= middle, ends) else (low, middle)
     free = (field > 0.0) & (field >= low)
     cells = SearchGrid(~free).search(*ends, "astar").cells
-    row, column = cells[field[cells[:, 0], cells[:, 1]].argmin()]
+    gaps = field[cells[:, 0], cells[:, 1]]
+    ties = np.flatnonzero(gaps <= gaps.min() + 1e-3)
+    row, column = cells[ties[len(ties) // 2]]
     return float(field[row, column]), (int(row), int(column))
 
 

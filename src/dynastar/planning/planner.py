@@ -177,6 +177,13 @@ class GridPlanner:
         A start that is too close to something is led out the shortest way first. Raises OutOfMap,
         StartOccupied, GoalOccupied or NoPath.
         """
+        try:
+            return self._plan(start_xy, goal_xy, explored, planner)
+        except PlanningError as error:
+            error.radius = self.radius
+            raise
+
+    def _plan(self, start_xy: Point, goal_xy: Point, explored: bool, planner: str) -> Plan:
         planner = planner or self.config.planner
         start_xy, goal_xy = as_point(start_xy, "the start"), as_point(goal_xy, "the goal")
         warm_up()
