@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dynastar.errors import GoalOccupied, NoPath, OutOfMap, StartOccupied
@@ -74,6 +74,7 @@ def test_walls_and_unknown_space_that_part():
     assert "unknown = 'free'" in said(NoPath, (0.5, 0.5), (4.5, 0.5), grid=veiled)
 
 
+@settings(max_examples=300)
 @given(st.integers(0, 10**6), st.floats(0.3, 3.0))
 def test_the_widest_radius_is_right(seed, radius):
     rng = np.random.default_rng(seed)

@@ -162,7 +162,7 @@ def _widest(
     gaps = field[cells[:, 0], cells[:, 1]]
     ties = np.flatnonzero(gaps <= gaps.min() + 1e-3)
     row, column = cells[ties[len(ties) // 2]]
-    return float(field[row, column]), (int(row), int(column))
+    return low, (int(row), int(column))
 
 
 def _connected(free: npt.NDArray[np.bool_], ends: tuple[tuple[int, int], tuple[int, int]]) -> bool:
@@ -172,4 +172,4 @@ def _connected(free: npt.NDArray[np.bool_], ends: tuple[tuple[int, int], tuple[i
 
 
 def _rounded_down(metres: float) -> float:
-    return math.floor(1e3 * metres) / 1e3
+    return math.floor(1e3 * metres + 0.01) / 1e3  # 0.01 mm for what was halved and rounded
