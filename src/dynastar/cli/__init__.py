@@ -12,6 +12,7 @@ from importlib import import_module
 from dynastar.cli.arguments import build_parser
 from dynastar.errors import DynastarError, InputError
 
+ROS, TAKE_ROS = "--ros-args", ("ros", "ros-sim")
 INTERRUPTED = 130
 BROKEN_PIPE = 141
 
@@ -19,8 +20,11 @@ BROKEN_PIPE = 141
 def main(argv: Sequence[str] | None = None) -> int:
     """Runs a command and returns its exit status; errors of dynastar's end here, in one line."""
     try:
-        arguments = build_parser().parse_args(argv)
-        command = import_module(f"dynastar.cli.{arguments.command}")
+        words = list(sys.argv[1:] if argv is None else argv)
+        cut = words.index(ROS) if ROS in words and words[0] in TAKE_ROS else len(words)
+        arguments = build_parser().parse_args(words[:cut])
+        arguments.ros_args = words[cut:]
+        command = import_module(f"dynastar.cli.{arguments.command.replace('-', '_')}")
         status: int = command.execute(arguments)
         sys.stdout.flush()
         return status

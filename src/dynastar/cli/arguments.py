@@ -106,6 +106,14 @@ SCHEMA_EXAMPLES = """\
 examples:
   dynastar schema --out scenario.schema.json"""
 
+ROS_EXAMPLES = """\
+examples:
+  dynastar ros-sim examples/office/office.toml
+  dynastar ros --scenario examples/office/office.toml
+  dynastar ros --ros-args -p robot:=jackal -p pose_source:=amcl -r cmd_vel:=/base/cmd_vel
+  ros2 topic pub --once /goal_pose geometry_msgs/msg/PoseStamped \\
+      '{header: {frame_id: map}, pose: {position: {x: 7.2, y: 10.0}, orientation: {w: 1.0}}}'"""
+
 EXAMPLES = """\
 examples:
   dynastar demo
@@ -228,6 +236,7 @@ def build_parser() -> argparse.ArgumentParser:
     _add_schema(commands)
     _add_bench(commands)
     _add_paper(commands)
+    _add_ros(commands)
     warmup = commands.add_parser(
         "warmup",
         help="compile everything now, so that the first mission does not wait",
@@ -398,6 +407,30 @@ def _add_bench(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
         help="of --replay (default out/SUITE-N) and `all` (out/bench)",
     )
     bench.add_argument("--no-gif", action="store_true", help="leave out the animation of --replay")
+
+
+def _add_ros(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
+    ros = commands.add_parser(
+        "ros",
+        help="the navigator as a ROS 2 node",
+        description="Runs the navigator as a ROS 2 node: it takes map, scan, odom and goal_pose and "
+        "publishes cmd_vel. What follows --ros-args goes to ROS.",
+        epilog=ROS_EXAMPLES,
+    )
+    ros.add_argument(
+        "--scenario",
+        type=path,
+        metavar="FILE",
+        help="take robot and errors from this scenario file",
+    )
+    sim = commands.add_parser(
+        "ros-sim",
+        help="the simulator as a ROS 2 node",
+        description="Runs a scenario as a ROS 2 node: it publishes map, scan and odom and takes cmd_vel. "
+        "What follows --ros-args goes to ROS.",
+        epilog=ROS_EXAMPLES,
+    )
+    sim.add_argument("scenario", metavar="SCENARIO.toml", type=path)
 
 
 def _add_set(parser: argparse.ArgumentParser) -> None:

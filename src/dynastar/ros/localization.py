@@ -1,0 +1,56 @@
+"""Where the robot is in the map: odometry, corrected by a localisation where there is one."""
+
+import math
+from collections import deque
+from typing import Literal
+
+from dynastar.errors import InputError
+from dynastar.geometry import Pose2D, Twist, compose, inverse
+from dynastar.navigator import RobotState
+from dynastar.robot import arc
+
+PoseSource = Literal["odom", "amcl"]
+KEPT = 5.0  # s of odometry
+LONGEST = 0.5  # s by which a pose is carried on at its twist
+
+
+class Localization:
+    """Keeps odometry, and the pose of the odometry's frame in the map."""
+
+    def __init__(self, source: PoseSource) -> None:
+        self.source = source
+        self.map_to_odom = Pose2D(0.0, 0.0, 0.0) if source == "odom" else None
+        self._odometry: deque[RobotState] = deque()
+
+    @property
+    def stamp(self) -> float:
+        """Stamp (s) of the newest odometry, -inf without any."""
+        return self._odometry[-1].stamp if self._odometry else -math.inf
+
+    def reset(self) -> None:
+        """Drops all odometry: time has jumped."""
+        self._odometry.clear()
+
+    def add_odometry(self, stamp: float, pose: Pose2D, twist: Twist) -> None:
+        """Takes in odometry; what is older than the newest is left out. InputError if not finite."""
+        if not all(map(math.isfinite, (stamp, *pose, *twist))):
+            raise InputError("the odometry is not finite")
+        if stamp <= self.stamp:
+            return
+        self._odometry.append(RobotState(stamp, pose, twist))
+        while self._odometry[0].stamp < stamp - KEPT:
+            self._odometry.popleft()
+
+    def add_pose(self, stamp: float, pose: Pose2D) -> None:
+        """Takes in the pose in the map at a time, as /amcl_pose has it."""
+        if self._odometry:
+            nearest = min(self._odometry, key=lambda state: abs(state.stamp - stamp))
+            self.map_to_odom = compose(pose, inverse(nearest.pose))
+
+    def at(self, now: float) -> RobotState | None:
+        """State in the map at ``now`` (s), from the newest odometry; None if it is not known."""
+        if not self._odometry or self.map_to_odom is None:
+            return None
+        newest = self._odometry[-1]
+        pose = arc(newest.pose, newest.twist, min(max(now - newest.stamp, 0.0), LONGEST))
+        return RobotState(now, compose(self.map_to_odom, pose), newest.twist)

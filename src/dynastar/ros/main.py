@@ -1,0 +1,68 @@
+"""Running the nodes: until SIGINT or SIGTERM, with zero velocity as the last word."""
+
+import signal
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import rclpy
+from rclpy.duration import Duration
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+
+from dynastar.navigator.navigator import warm_up
+from dynastar.planning import warm_up_all
+
+FAREWELL = 0.5  # s to hand the last message to the middleware
+
+
+def navigate(arguments: Sequence[str]) -> int:
+    """Runs the navigator's node; ``arguments`` are ROS's own (``--ros-args ...``)."""
+    from dynastar.ros.node import NavigatorNode
+
+    warm_up_all()
+    warm_up("manoeuvres")
+    return run(NavigatorNode, arguments)
+
+
+def simulate(scenario: Any, arguments: Sequence[str]) -> int:
+    """Runs the simulator's node with a scenario."""
+    from dynastar.ros.sim_node import SimulatorNode
+    from dynastar.simulation import warm_up as warm_up_simulation
+
+    warm_up_simulation()
+    return run(lambda: SimulatorNode(scenario), arguments)
+
+
+def parameters_of(scenario: Any) -> list[str]:
+    """ROS arguments that give the navigator's node a scenario's robot and errors."""
+    from dynastar.ros.sim_node import as_parameters
+
+    words = ["--ros-args"]
+    for name, value in as_parameters(scenario).items():
+        words += ["-p", f"{name}:={value}"]
+    return words
+
+
+def run(make: Callable[[], Node], arguments: Sequence[str]) -> int:
+    """Spins a node until a signal ends it; 0."""
+    stopping: list[int] = []
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda number, frame: stopping.append(number))
+    rclpy.init(args=list(arguments), signal_handler_options=SignalHandlerOptions.NO)
+    node = make()
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    try:
+        while not stopping and rclpy.ok():
+            executor.spin_once(timeout_sec=0.1)
+    finally:
+        if hasattr(node, "stop"):
+            node.stop()
+            for publisher in node.publishers:
+                if publisher.topic_name.endswith("cmd_vel"):
+                    publisher.wait_for_all_acked(Duration(seconds=FAREWELL))
+        executor.shutdown()
+        node.destroy_node()
+        rclpy.try_shutdown()
+    return 0

@@ -1,0 +1,111 @@
+"""The nodes as processes over the real middleware, in the office with unmapped boxes and walkers."""
+
+import math
+import signal
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from nav_msgs.srv import GetPlan
+from std_srvs.srv import Trigger
+
+from dynastar import load_map
+from dynastar.ros.convert import grid_message, rotation_of
+
+OFFICE = Path(__file__).parents[2] / "examples" / "office" / "office.yaml"
+BRAKING = 0.3  # s within which braking has to begin
+
+
+def brakes_after(client, struck: float) -> float:
+    """Seconds from a fault to the first of the commands that end in a stop."""
+    client.spin(2.5)
+    assert client.commands[-1][1:] == (0.0, 0.0)
+    recent = [(at, abs(v)) for at, v, _ in client.commands if at > struck - 0.5]
+    fastest = max(v for _, v in recent)
+    last = max(at for at, v in recent if v > 0.98 * fastest)
+    return next(at for at, _ in recent if at > max(struck, last)) - struck
+
+
+def test_it_drives_to_a_goal_and_stops(office):
+    office.send(7.2, 10.0)
+    office.wait_for("arrived")
+    assert math.dist(office.place, (7.2, 10.0)) < 0.35
+    assert office.plans
+    assert office.contacts == []
+    latencies = np.array(office.latencies[20:])
+    latencies = latencies[latencies < 0.045]  # those that answer a scan
+    print(f"scan to cmd_vel: median {1e3 * np.median(latencies):.1f} ms")
+    assert np.median(latencies) < 0.02
+    for process in (office.navigator, office.simulator):
+        process.send_signal(signal.SIGINT)
+        assert process.wait(10.0) == 0
+    office.spin(0.3)
+    assert office.commands[-1][1:] == (0.0, 0.0)
+
+
+def test_goals_replace_one_another_and_are_cancelled_and_refused(office):
+    office.send(7.2, 10.0)
+    assert office.spin(20.0, office.drives)
+    office.send(5.0, 2.0)
+    assert office.spin(10.0, lambda: office.plans[-1].poses[-1].pose.position.y == 2.0)
+    for x, y, frame in ((7.0, 2.0, "odom"), (math.nan, 2.0, "map"), (700.0, 2.0, "map")):
+        plans = len(office.plans)
+        office.send(x, y, frame)
+        office.spin(0.5)
+        assert len(office.plans) == plans
+    answer = office.call(Trigger, "dynastar/cancel", Trigger.Request())
+    assert answer.success
+    office.wait_for("cancelled", 5.0)
+    assert office.spin(5.0, lambda: office.commands[-1][1:] == (0.0, 0.0))
+
+
+@pytest.mark.parametrize("lost", ["scan", "odom"])
+def test_lost_data_brake_it_and_it_goes_on_when_they_are_back(office, lost):
+    office.send(12.0, 12.5)
+    assert office.spin(20.0, office.drives)
+    said = office.set_parameter("dynastar_sim", f"publish_{lost}", type=1, bool_value=False)
+    struck = time.monotonic()
+    assert said.successful
+    assert brakes_after(office, struck) < BRAKING
+    assert "sensor_lost" in office.state
+    assert "s old" in office.state
+    office.set_parameter("dynastar_sim", f"publish_{lost}", type=1, bool_value=True)
+    assert office.spin(10.0, office.drives)
+
+
+def test_a_simulator_that_dies_stops_it(office):
+    office.send(12.0, 12.5)
+    assert office.spin(20.0, office.drives)
+    office.simulator.kill()
+    assert brakes_after(office, time.monotonic()) < BRAKING
+    assert "sensor_lost" in office.state
+
+
+def test_plans_parameters_and_another_map(office):
+    request = GetPlan.Request()
+    for pose, (x, y) in ((request.start, (2.0, 2.0)), (request.goal, (37.6, 22.6))):
+        pose.header.frame_id = "map"
+        pose.pose.position.x, pose.pose.position.y = x, y
+        pose.pose.orientation = rotation_of(0.0)
+    assert len(office.call(GetPlan, "make_plan", request).plan.poses) > 5
+    request.goal.pose.position.x = 500.0
+    assert len(office.call(GetPlan, "make_plan", request).plan.poses) == 0
+    good = office.set_parameter("dynastar", "dwa.horizon", type=3, double_value=3.0)
+    assert good.successful
+    bad = office.set_parameter("dynastar", "dwa.horizon", type=3, double_value=-1.0)
+    assert not bad.successful
+    fixed = office.set_parameter("dynastar", "robot", type=4, string_value="jackal")
+    assert "read at the start only" in fixed.reason
+    office.send(7.2, 10.0)
+    assert office.spin(20.0, office.drives)
+    plans = len(office.plans)
+    grid = load_map(OFFICE)
+    values = grid.values.copy()
+    values[80:84, 20:170] = 100  # a wall across the first room, y = 4.0 to 4.2
+    values[80:84, 140:160] = 0
+    office.maps.publish(grid_message(values, grid.frame, "map", time.time()))
+    assert office.spin(10.0, lambda: len(office.plans) > plans)
+    office.maps.publish(grid_message(values, grid.frame, "other", time.time()))
+    office.spin(0.5)
+    assert office.navigator.poll() is None
