@@ -1,0 +1,57 @@
+"""The colcon package: its files parse, and name what exists."""
+
+import ast
+import json
+import re
+import tomllib
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).parents[2]
+PACKAGE = ROOT / "ros" / "dynastar_ros"
+TOPICS = {"/map", "/local_map", "/scan", "/plan", "/local_plan", "/markers", "/odom", "/goal_pose"}
+
+
+def test_its_parameters_are_those_of_the_node():
+    pytest.importorskip("rclpy")
+    from dynastar.config import checked
+    from dynastar.navigator import NavigatorConfig
+    from dynastar.ros.parameters import NodeSettings, fields_of, nested
+
+    given = yaml.safe_load((PACKAGE / "config" / "dynastar.yaml").read_text())
+    values = given["dynastar"]["ros__parameters"]
+    own = fields_of(NodeSettings)
+    checked(NodeSettings, {name: value for name, value in values.items() if name in own})
+    others = nested({name: value for name, value in values.items() if name not in own})
+    checked(NavigatorConfig, others)
+
+
+def test_its_version_and_licence_are_those_of_the_project():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    described = ElementTree.parse(PACKAGE / "package.xml").getroot()
+    assert described.findtext("license") == project["license"]
+    version = re.search(r'__version__ = "(.*)"', (ROOT / "src/dynastar/__init__.py").read_text())
+    assert described.findtext("version") == version[1]
+    assert f'version="{version[1]}"' in (PACKAGE / "setup.py").read_text()
+
+
+def test_launch_files_start_executables_that_exist():
+    setup = (PACKAGE / "setup.py").read_text()
+    for file in (PACKAGE / "launch").glob("*.py"):
+        tree = ast.parse(file.read_text())
+        names = re.findall(r'package="dynastar_ros",\s+executable="(\w+)"', file.read_text())
+        assert names
+        assert all(f'"{name} = dynastar_ros:{name}"' in setup for name in names)
+        assert any(getattr(node, "name", "") == "generate_launch_description" for node in tree.body)
+
+
+def test_layouts_show_topics_that_exist():
+    rviz = yaml.safe_load((PACKAGE / "rviz" / "dynastar.rviz").read_text())
+    manager = rviz["Visualization Manager"]
+    shown = [thing["Topic"]["Value"] for thing in manager["Displays"]]
+    assert set(shown) < TOPICS
+    foxglove = json.loads((PACKAGE / "foxglove" / "dynastar.json").read_text())
+    assert set(foxglove["configById"]["3D!main"]["topics"]) < TOPICS
