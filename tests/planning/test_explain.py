@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from dynastar.clearance import distance_to_squares
 from dynastar.errors import GoalOccupied, NoPath, OutOfMap, StartOccupied
 from dynastar.grid import OccupancyGrid
 from dynastar.planning import GridPlanner, plan
@@ -90,8 +91,10 @@ def test_the_widest_radius_is_right(seed, radius):
             assert widest < radius
             if widest > 0.0:
                 GridPlanner(grid, widest).plan(a, b)
-            with pytest.raises((NoPath, GoalOccupied, StartOccupied)):
-                GridPlanner(grid, widest + 2e-3).plan(a, b)
+            room = distance_to_squares(grid.occupied)[grid.world_to_cell(*a)]
+            if room > widest + 2e-3:  # a start with less room is led out of it
+                with pytest.raises((NoPath, GoalOccupied, StartOccupied)):
+                    GridPlanner(grid, widest + 2e-3).plan(a, b)
     except (GoalOccupied, StartOccupied) as error:
         words = str(error)
         if "nearest place" in words:

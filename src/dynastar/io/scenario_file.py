@@ -9,7 +9,7 @@ import re
 import tomllib
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 from dynastar import simulation
 from dynastar.config import Field, checked, choose, nearest, shown
@@ -72,15 +72,6 @@ class MapTable(NamedTuple):
     rows: tuple[str, ...]
     resolution: Annotated[float, Field("side of a cell", "m", 1e-3, 1e3)] = 1.0
     origin: Annotated[tuple[float, float], Field("lowest corner", "m", -1e6, 1e6)] = (0.0, 0.0)
-
-
-class SpeedLimitTable(NamedTuple):
-    """A mask of speed limits, and what its values mean: see ``masks.SpeedScale``."""
-
-    mask: Any
-    type: Literal["percent", "absolute"] = SpeedScale._field_defaults["type"]
-    base: float = SpeedScale._field_defaults["base"]
-    multiplier: float = SpeedScale._field_defaults["multiplier"]
 
 
 class RobotTable(NamedTuple):
@@ -207,9 +198,9 @@ def _masked(table: ScenarioTable, folder: Path, robot: Robot) -> OccupancyGrid:
     if table.keepout is not None:
         grid = with_keepout(grid, _map(table.keepout, folder, "keepout"))
     if table.speed_limit is not None:
-        limit = checked(SpeedLimitTable, table.speed_limit, "speed_limit")
-        mask = _map(limit.mask, folder, "speed_limit.mask")
-        scale = SpeedScale(limit.type, limit.base, limit.multiplier)
+        values = _table(table.speed_limit, "speed_limit")
+        mask = _map(values.pop("mask", None), folder, "speed_limit.mask")
+        scale = checked(SpeedScale, values, "speed_limit")
         grid = with_speed_limits(grid, mask, robot.limits.v_max, scale)
     return grid
 

@@ -9,9 +9,9 @@ from dynastar.io.scenario_file import (
     PlaceTable,
     RobotTable,
     ScenarioTable,
-    SpeedLimitTable,
 )
 from dynastar.io.scenario_things import MoverTable, ObstacleTable
+from dynastar.masks import SpeedScale
 from dynastar.navigator import NavigatorConfig
 from dynastar.robot import ROBOTS, Lidar, Limits
 from dynastar.simulation.scenario import Noise
@@ -27,7 +27,7 @@ def scenario_schema() -> Schema:
     map_ = {"oneOf": [{"type": "string", "description": "a map's file"}, _table(MapTable)]}
     pair = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 3}
     place = {"oneOf": [pair, _table(PlaceTable)]}
-    speed_limit = _table(SpeedLimitTable)
+    speed_limit = _table(SpeedScale) | {"required": ["mask"]}
     speed_limit["properties"]["mask"] = map_
     robot = _table(RobotTable)
     robot["properties"]["base"] = {"enum": list(ROBOTS)}

@@ -68,8 +68,8 @@ def misfit(
         if gap >= radius:
             trouble = f"has no cell beside it where a radius of {radius:.3g} m fits"
     words = [f"{what} ({x:g}, {y:g}) {trouble}", _nearest_fit(grid, field, (x, y), radius)]
-    if unknown == "blocked" and grid.unknown.any() and not grid.blocked("free")[cell]:
-        words += [UNKNOWN_HELPS] if grid.unknown[cell] else []
+    if unknown == "blocked" and grid.unknown[cell]:
+        words.append(UNKNOWN_HELPS)
     return "; ".join(words)
 
 

@@ -192,7 +192,7 @@ class GridPlanner:
         start, goal = self._point(start_xy, "start"), self._point(goal_xy, "goal")
         goal_cell = self._fitting_cell(goal)
         if goal_cell is None:
-            raise GoalOccupied(f"the goal {self._too_close(goal)}")
+            raise GoalOccupied(self._misfit("goal", goal))
         start_cell = self._fitting_cell(start)
         if start_cell is not None:
             way_out = np.array([start_cell], np.int32)
@@ -269,7 +269,7 @@ class GridPlanner:
             raise no_path
         looked = reach_of_escape(self._radius_cells) * self.grid.resolution
         raise StartOccupied(
-            f"the start {self._too_close(start)}, and no way out was found within {looked:.3g} m"
+            f"{self._misfit('start', start)}, and no way out was found within {looked:.3g} m"
         )
 
     def _point(self, xy: Point, name: str) -> Point:
@@ -294,23 +294,10 @@ class GridPlanner:
                 return r, c
         return None
 
-    def _too_close(self, point: Point) -> str:
-        """Describe why the disc does not fit at a point."""
+    def _misfit(self, name: str, point: Point) -> str:
+        """Words for a point where the disc does not fit; ``explained`` says why."""
         x, y = self.grid.frame.to_world(*point)
-        if self._blocked[int(point[0]), int(point[1])]:
-            return f"({x:g}, {y:g}) lies in an obstacle"
-        gap = self._clearance_at(point) * self.grid.resolution
-        if gap < self.radius:
-            return f"({x:g}, {y:g}) has {gap:.3g} m of clearance where {self.radius:g} m are needed"
-        return f"({x:g}, {y:g}) has no cell beside it where the footprint fits"
-
-    def _clearance_at(self, point: Point) -> float:
-        """Cells from a point to the nearest blocked square or the map's edge."""
-        rows, columns = np.nonzero(self._blocked)
-        away_y = np.maximum(np.abs(rows + 0.5 - point[0]) - 0.5, 0.0)
-        away_x = np.maximum(np.abs(columns + 0.5 - point[1]) - 0.5, 0.0)
-        edge = min(*point, self.grid.rows - point[0], self.grid.columns - point[1])
-        return float(np.hypot(away_y, away_x).min(initial=edge))
+        return f"the {name} ({x:g}, {y:g}) has no room for a radius of {self.radius:.3g} m"
 
     def _path(self, line: npt.NDArray[np.float64], start_xy: Point, goal_xy: Point) -> Path:
         points = self.grid.frame.points_to_world(line)

@@ -50,7 +50,7 @@ class NavigatorNode(Node):  # type: ignore[misc]
         settings = self.parameters.settings
         self.navigator: Navigator | None = None
         self.localization = Localization(settings.pose_source)
-        self.publishers_ = Publishers(self, settings.global_frame)
+        self._shown = Publishers(self, settings.global_frame)
         self._map: GridMessage | None = None
         self._grid: OccupancyGrid | None = None
         self._masks: dict[str, GridMessage] = {}
@@ -113,7 +113,7 @@ class NavigatorNode(Node):  # type: ignore[misc]
             self.navigator = self._new_navigator()
         else:
             self.navigator.set_map(grid)
-        self.publishers_.reset()
+        self._shown.reset()
         self.get_logger().info(f"map: {grid.columns} x {grid.rows} cells, {grid.extent()}")
 
     def _on_scan(self, message: ScanMessage) -> None:
@@ -175,7 +175,7 @@ class NavigatorNode(Node):  # type: ignore[misc]
 
     def _restart(self, reason: str) -> None:
         self.localization.reset()
-        self.publishers_.reset()
+        self._shown.reset()
         self._scan, self._ticked = None, -math.inf
         if self.navigator is not None:
             self.navigator = self._new_navigator()
@@ -190,7 +190,7 @@ class NavigatorNode(Node):  # type: ignore[misc]
         self._ticked = now
         if self.navigator is None:
             self._send(Twist(0.0, 0.0), now)
-            self.publishers_.say("idle", self._refused or "no map has come yet", {}, now)
+            self._shown.say("idle", self._refused or "no map has come yet", {}, now)
             return
         state, trouble = self._state(now)
         scan = None if self._taken else self._scan
@@ -198,7 +198,7 @@ class NavigatorNode(Node):  # type: ignore[misc]
         command = self.navigator.command(state, scan)
         self._send(command, now)
         status = self.navigator.status
-        self.publishers_.show(self.navigator, status, state, now)
+        self._shown.show(self.navigator, status, state, now)
         values = {
             "v": f"{command.v:.3f} m/s",
             "omega": f"{command.omega:.3f} rad/s",
@@ -207,7 +207,7 @@ class NavigatorNode(Node):  # type: ignore[misc]
             "replans": status.replans,
             "refused": self._refused,
         }
-        self.publishers_.say(status.state, trouble or status.reason, values, now)
+        self._shown.say(status.state, trouble or status.reason, values, now)
 
     def _state(self, now: float) -> tuple[RobotState, str]:
         """The state now, and what is wrong with odometry, scan or pose: then a state that stops."""

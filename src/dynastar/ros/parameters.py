@@ -25,7 +25,6 @@ class NodeSettings(NamedTuple):
     ] = ()
     preset: Annotated[Preset, Field("settings to start from")] = "default"
     global_frame: Annotated[str, Field("frame of map, goals and poses")] = "map"
-    odom_frame: Annotated[str, Field("frame of the odometry")] = "odom"
     base_frame: Annotated[str, Field("frame of the robot")] = "base_link"
     pose_source: Annotated[PoseSource, Field("odometry alone, or corrected by amcl_pose")] = "odom"
     laser_pose: Annotated[
@@ -140,9 +139,7 @@ def _declare(node: Node, name: str, field: Field, default: Any) -> Any:
                     from_value=float(field.low), to_value=float(field.high), step=0.0
                 )
             ]
-    value = list(default) if isinstance(default, tuple) else default
-    if value == []:
-        value = [0.0][:0] or None
+    value = list(default) or None if isinstance(default, tuple) else default
     node.declare_parameter(name, value, described)
     found = node.get_parameter(name).value
     if isinstance(default, tuple):
