@@ -7,6 +7,7 @@ from dynastar.errors import MissingPackage
 EXTRAS = {
     "viewer": ("matplotlib",),
     "bench": ("matplotlib", "scipy"),
+    "bags": ("rosbags",),
     "ros": ("rclpy", "nav_msgs", "visualization_msgs", "diagnostic_msgs", "std_srvs"),
 }
 

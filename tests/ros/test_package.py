@@ -7,7 +7,6 @@ import tomllib
 from pathlib import Path
 from xml.etree import ElementTree
 
-import pytest
 import yaml
 
 ROOT = Path(__file__).parents[2]
@@ -16,10 +15,9 @@ TOPICS = {"/map", "/local_map", "/scan", "/plan", "/local_plan", "/markers", "/o
 
 
 def test_its_parameters_are_those_of_the_node():
-    pytest.importorskip("rclpy")
     from dynastar.config import checked
     from dynastar.navigator import NavigatorConfig
-    from dynastar.ros.parameters import NodeSettings, fields_of, nested
+    from dynastar.ros.settings import NodeSettings, fields_of, nested
 
     given = yaml.safe_load((PACKAGE / "config" / "dynastar.yaml").read_text())
     values = given["dynastar"]["ros__parameters"]

@@ -1,17 +1,10 @@
 """What may be typed: the commands, their options, their help."""
 
 import argparse
-import math
-import re
 
 from dynastar import __version__
-from dynastar.config import nearest
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:  # neither is imported for --help
-    from collections.abc import Iterable
-    from pathlib import Path
-    from typing import NoReturn
+from dynastar.cli import examples
+from dynastar.cli.parsing import OneLineParser, count, distance, number, path, replayed, seed
 
 PRESETS = ("default", "paper", "printed")  # those of dynastar.navigator
 # The names in dynastar.bench.runner.SUITES, which would import too much for --help.
@@ -30,194 +23,6 @@ SUITES = (
     "scenarios",
 )
 
-PLAN_EXAMPLES = """\
-examples:
-  dynastar plan office.yaml --start 2 2 --goal 38 23 --radius 0.25
-  dynastar plan office.yaml --start 2 2 --goal 38 23 --planner astar --out plan.png
-  dynastar plan AR0011SR.map --start 239 357 --goal 194 312 --json
-
-For ROS maps X Y are metres in the map's frame. For MovingAI .map files they are integers, the
-file's column and row; a cell is 1 m, and the path has cell centres at + 0.5."""
-
-RUN_EXAMPLES = """\
-examples:
-  dynastar run examples/office/office.toml --out out/office
-  dynastar run office.toml --seed 7 --preset paper --json > summary.json
-  dynastar run office.toml --set dwa.horizon=2 --set reverse=false
-
-Writes figure.png, animation.gif, summary.json, episode.npz and config.json into DIR."""
-
-BENCH_EXAMPLES = """\
-examples:
-  dynastar bench movingai --data data/movingai
-  dynastar bench barn --data data --workers 2 --json-out barn.json
-  dynastar bench barn --replay 17               # mission 17 again, with pictures and the episode
-  dynastar bench barn --set dwa.horizon=2 --save-failures out/failures --json-out b.json
-  dynastar bench maps --controller pure_pursuit
-  dynastar bench scenarios --data examples/features
-  dynastar bench all --quick --data data --out out/bench
-  dynastar bench compare barn.json b.json
-
-A mission has the suite's own number. A run with --json-out that was cut off goes on where it ended when
-it is called again; until then its rows are in FILE.rows.jsonl. `all` runs every suite whose data and
-extras are there and writes all.json, all.txt and all.png into DIR. `compare` takes two results of the
-same missions and says for each suite whether the second is better, worse or not clearly different."""
-
-PAPER_EXAMPLES = """\
-examples:
-  dynastar paper table1
-  dynastar paper table3 --maps 100 --out out/hundred --json-out -
-  dynastar paper all --json-out paper.json
-
-  presets   the settings in which the presets printed, paper and default differ
-  table1    traditional against improved A*, on the own map, over maps of 40 x 40 cells (random, rooms,
-            maze, office; corner to corner), and over a tenth as many of 512 x 512; 2 minutes
-  table3    the improved A* alone against the hybrid, in the own world and over worlds of 20 x 20 cells
-            with unknown blocks and a mover, by the presets default and paper, and a tenth of them as
-            printed; 50 minutes for 1000
-  ablation  each term of Eqs. 2 and 9 left out or read otherwise, and each part of the whole, on worlds
-            of the suites paper and people; 2 hours for 100 of each
-  figures   Figs. 1 to 8; 10 seconds
-
-Times are for two cores. Writes tables (.md), a line for each map or world (.csv) and pictures (.png,
-.svg) into DIR, and goes on from the .jsonl there where it was cut off."""
-
-WARMUP_EXAMPLES = """\
-examples:
-  dynastar warmup
-  dynastar warmup --clear
-
-The kernels lie in ~/.cache/dynastar (or $XDG_CACHE_HOME/dynastar), a folder for each version of
-their sources; $NUMBA_CACHE_DIR, if it is set, is where they lie instead and is not cleared."""
-
-DEMO_EXAMPLES = """\
-examples:
-  dynastar demo
-  dynastar demo --list
-  dynastar demo --copy my-examples"""
-
-INFO_EXAMPLES = """\
-examples:
-  dynastar info office.yaml
-  dynastar info examples/office/office.toml --out office.png
-  dynastar info out/office/episode.npz --json"""
-
-SCHEMA_EXAMPLES = """\
-examples:
-  dynastar schema --out scenario.schema.json"""
-
-ROS_EXAMPLES = """\
-examples:
-  dynastar ros-sim examples/office/office.toml
-  dynastar ros --scenario examples/office/office.toml
-  dynastar ros --ros-args -p robot:=jackal -p pose_source:=amcl -r cmd_vel:=/base/cmd_vel
-  ros2 topic pub --once /goal_pose geometry_msgs/msg/PoseStamped \\
-      '{header: {frame_id: map}, pose: {position: {x: 7.2, y: 10.0}, orientation: {w: 1.0}}}'"""
-
-EXAMPLES = """\
-examples:
-  dynastar demo
-  dynastar info office.yaml --out office.png
-  dynastar plan office.yaml --start 2 2 --goal 38 23 --radius 0.25
-  dynastar run examples/office/office.toml --out out/office
-  dynastar bench paper --missions 20
-  dynastar bench all --quick --data data
-  dynastar paper table1 --maps 100
-  dynastar warmup"""
-
-
-class OneLineParser(argparse.ArgumentParser):
-    """A parser that says what is wrong in one line, and takes -1e3 and -inf as numbers."""
-
-    def __init__(self, **settings: object) -> None:
-        settings.setdefault("formatter_class", argparse.RawDescriptionHelpFormatter)
-        settings.setdefault("allow_abbrev", False)
-        super().__init__(**settings)  # type: ignore[arg-type]
-        self._negative_number_matcher = re.compile(r"^-(\d|\.\d|inf|nan)", re.IGNORECASE)
-
-    def error(self, message: str) -> "NoReturn":
-        """Exits with status 2 and ``message``."""
-        self.exit(2, f"{self.prog}: {' '.join(message.split())} (see {self.prog} --help)\n")
-
-    def parse_args(self, args=None, namespace=None):  # type: ignore[no-untyped-def]
-        """As the original, but names the option that is nearest to an unknown one."""
-        known, others = self.parse_known_args(args, namespace)
-        if others:
-            command = self._commands().get(getattr(known, "command", ""), self)
-            command.error(_unknown(others[0], command._option_string_actions))
-        return known
-
-    def _commands(self) -> "dict[str, OneLineParser]":
-        return next(
-            (
-                dict(action.choices)
-                for action in self._actions
-                if isinstance(action, argparse._SubParsersAction)
-            ),
-            {},
-        )
-
-    def _check_value(self, action: argparse.Action, value: object) -> None:
-        if action.choices is not None and value not in action.choices:
-            what = (action.metavar or action.dest) if not action.option_strings else "value"
-            words = (
-                f"unknown {str(what).lower()} '{value!s:.80}'{nearest(str(value), action.choices)}"
-            )
-            raise argparse.ArgumentError(action if action.option_strings else None, words)
-
-
-def _unknown(word: str, options: "Iterable[str]") -> str:
-    """Describe an argument that no option takes."""
-    if word.startswith("-"):
-        option = word.partition("=")[0]
-        return f"unknown option '{option:.80}'{nearest(option, options)}"
-    return f"one argument too many: '{word:.80}'"
-
-
-def path(text: str) -> "Path":
-    """A file or folder."""
-    from pathlib import Path
-
-    return Path(text)
-
-
-def number(text: str) -> float:
-    """A finite number."""
-    value = float(text)
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a finite number")
-    return value
-
-
-def distance(text: str) -> float:
-    """A finite number of metres, 0 or more."""
-    value = number(text)
-    if value < 0.0:
-        raise argparse.ArgumentTypeError(f"{text!r} is negative: expected 0 m or more")
-    return value
-
-
-def count(text: str) -> int:
-    """A whole number, 1 or more."""
-    value = int(text)
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"{text!r} is too small: expected 1 or more")
-    return value
-
-
-def seed(text: str) -> int:
-    """A whole number, 0 or more."""
-    value = int(text)
-    if value < 0:
-        raise argparse.ArgumentTypeError(f"{text!r} is negative: expected 0 or more")
-    return value
-
-
-def replayed(text: str) -> tuple[int, int]:
-    """A mission's number N, or N:R with its repeat."""
-    number, _, repeat = text.partition(":")
-    return seed(number), seed(repeat or "0")
-
 
 def build_parser() -> argparse.ArgumentParser:
     """The parser of all commands; the result's ``command`` names a module of this room."""
@@ -225,7 +30,7 @@ def build_parser() -> argparse.ArgumentParser:
         prog="dynastar",
         description="Navigation for differential-drive robots: an improved A* plans, "
         "a dynamic window drives.",
-        epilog=EXAMPLES,
+        epilog=examples.EXAMPLES,
     )
     parser.add_argument("--version", action="version", version=f"dynastar {__version__}")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
@@ -237,11 +42,12 @@ def build_parser() -> argparse.ArgumentParser:
     _add_bench(commands)
     _add_paper(commands)
     _add_ros(commands)
+    _add_replay(commands)
     warmup = commands.add_parser(
         "warmup",
         help="compile everything now, so that the first mission does not wait",
         description="Compiles the kernels of planning, sensing and driving into the cache.",
-        epilog=WARMUP_EXAMPLES,
+        epilog=examples.WARMUP_EXAMPLES,
     )
     warmup.add_argument(
         "--clear", action="store_true", help="delete the compiled kernels of all versions instead"
@@ -254,7 +60,7 @@ def _add_plan(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
         "plan",
         help="find a path on a map",
         description="Finds a smoothed path on a map that keeps a disc clear of obstacles.",
-        epilog=PLAN_EXAMPLES,
+        epilog=examples.PLAN_EXAMPLES,
     )
     plan.add_argument("map", metavar="MAP", type=path, help=".yaml (ROS), .map, .npy or .txt")
     plan.add_argument("--start", nargs=2, type=number, required=True, metavar=("X", "Y"))
@@ -284,7 +90,7 @@ def _add_run(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
         help="drive a scenario in simulation",
         description="Drives a scenario in simulation; draws it and measures it. "
         "Exit status 0 only for an arrival without contact.",
-        epilog=RUN_EXAMPLES,
+        epilog=examples.RUN_EXAMPLES,
     )
     run.add_argument("scenario", metavar="SCENARIO.toml", type=path)
     run.add_argument("--out", type=path, metavar="DIR", help="default out/<scenario's name>")
@@ -292,6 +98,12 @@ def _add_run(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
     run.add_argument("--preset", choices=PRESETS, help="instead of the scenario's")
     run.add_argument("--json", action="store_true", help="JSON on stdout instead of a table")
     run.add_argument("--no-gif", action="store_true", help="leave out the animation")
+    run.add_argument(
+        "--bag",
+        type=path,
+        metavar="DIR",
+        help="record the messages of a ROS 2 robot to this new folder",
+    )
     _add_set(run)
 
 
@@ -301,7 +113,7 @@ def _add_demo(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
         help="drive an example that comes with dynastar",
         description="Drives a robot across an office, or through another of the examples that come with "
         "dynastar; draws it and measures it, as `dynastar run` does.",
-        epilog=DEMO_EXAMPLES,
+        epilog=examples.DEMO_EXAMPLES,
     )
     demo.add_argument(
         "name", nargs="?", default="office", metavar="NAME", help="of --list (default office)"
@@ -321,7 +133,7 @@ def _add_info(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
         help="what a map, a scenario or an episode holds",
         description="Says what a map, a scenario or an episode holds: extent, resolution, how much is "
         "free; robot, start and goals; the result.",
-        epilog=INFO_EXAMPLES,
+        epilog=examples.INFO_EXAMPLES,
     )
     info.add_argument("file", metavar="FILE", type=path, help="a map, .toml or .npz")
     info.add_argument("--json", action="store_true", help="JSON on stdout instead of a table")
@@ -334,7 +146,7 @@ def _add_schema(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
         help="the JSON Schema of scenario files, for editors",
         description="Prints the JSON Schema of scenario files. Editors complete and check a TOML file by "
         "it where its first line is `#:schema scenario.schema.json`.",
-        epilog=SCHEMA_EXAMPLES,
+        epilog=examples.SCHEMA_EXAMPLES,
     )
     schema.add_argument("--out", type=path, metavar="FILE", help="into this file instead")
 
@@ -345,7 +157,7 @@ def _add_bench(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
         help="run suites of missions, compare results",
         description="Runs a suite of missions, or all of them, and counts every failure; runs a mission "
         "again; compares two results.",
-        epilog=BENCH_EXAMPLES,
+        epilog=examples.BENCH_EXAMPLES,
     )
     bench.add_argument(
         "suite",
@@ -415,7 +227,7 @@ def _add_ros(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
         help="the navigator as a ROS 2 node",
         description="Runs the navigator as a ROS 2 node: it takes map, scan, odom and goal_pose and "
         "publishes cmd_vel. What follows --ros-args goes to ROS.",
-        epilog=ROS_EXAMPLES,
+        epilog=examples.ROS_EXAMPLES,
     )
     ros.add_argument(
         "--scenario",
@@ -428,9 +240,41 @@ def _add_ros(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
         help="the simulator as a ROS 2 node",
         description="Runs a scenario as a ROS 2 node: it publishes map, scan and odom and takes cmd_vel. "
         "What follows --ros-args goes to ROS.",
-        epilog=ROS_EXAMPLES,
+        epilog=examples.ROS_EXAMPLES,
     )
     sim.add_argument("scenario", metavar="SCENARIO.toml", type=path)
+
+
+def _add_replay(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
+    replay = commands.add_parser(
+        "replay",
+        help="drive by the scans and odometry of a recording",
+        description="Gives a recording's scans, odometry, map and goals to the navigator and says what it "
+        "commands; with other settings, too, beside the first.",
+        epilog=examples.REPLAY_EXAMPLES,
+    )
+    replay.add_argument(
+        "bag", metavar="BAG", type=path, help="a folder of rosbag2, or an .mcap file"
+    )
+    replay.add_argument(
+        "--robot", metavar="NAME", help="needed unless the recording is by dynastar"
+    )
+    replay.add_argument("--preset", choices=PRESETS, help="compare with this preset")
+    replay.add_argument(
+        "--topic",
+        action="append",
+        default=[],
+        metavar="NAME=TOPIC",
+        help="the recording's topic for map, scan, odom, goal_pose, amcl_pose, tf; repeatable",
+    )
+    replay.add_argument(
+        "--pose",
+        choices=("odom", "amcl", "tf"),
+        help="what says where the robot is in the map (default odom, or as recorded)",
+    )
+    replay.add_argument("--out", type=path, metavar="DIR", help="default out/replay-<bag's name>")
+    replay.add_argument("--json", action="store_true", help="JSON on stdout instead of a table")
+    _add_set(replay)
 
 
 def _add_set(parser: argparse.ArgumentParser) -> None:
@@ -448,7 +292,7 @@ def _add_paper(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
         "paper",
         help="remake the paper's tables and figures",
         description="Remakes the paper's tables and figures, over as many maps as you like.",
-        epilog=PAPER_EXAMPLES,
+        epilog=examples.PAPER_EXAMPLES,
     )
     paper.add_argument(
         "what",

@@ -40,3 +40,10 @@ def make_folder(option: str, folder: Path) -> Path:
     if not os.access(folder, os.W_OK):
         raise InputError(f"{option} {folder}: nothing can be written into it; name another")
     return folder
+
+
+def check_new(option: str, folder: Path) -> None:
+    """Raises InputError where ``folder`` is there already or cannot be made."""
+    if folder.exists() or folder.is_symlink():
+        raise InputError(f"{option} {folder}: is there already; name a new folder")
+    make_folder(option, folder.absolute().parent)

@@ -10,10 +10,11 @@ from typing import Any
 from dynastar import io, metrics
 from dynastar.bench.settings import merged, read_settings
 from dynastar.cli.compiling import prepare
-from dynastar.cli.outputs import make_folder
+from dynastar.cli.outputs import check_new, make_folder
 from dynastar.cli.show import as_json, as_table
 from dynastar.episode import Episode
 from dynastar.errors import MissingPackage
+from dynastar.extras import require
 from dynastar.io.files import write_json
 from dynastar.simulation import Scenario
 
@@ -27,9 +28,18 @@ def execute(arguments: argparse.Namespace) -> int:
         scenario = replace(scenario, preset=arguments.preset)
     settings = read_settings(arguments.set, scenario.preset, scenario.navigator)
     scenario = replace(scenario, navigator=merged(scenario.navigator, settings))
+    if arguments.bag is not None:
+        require("bags", "recordings need")
+        check_new("--bag", arguments.bag)
     folder = make_folder("--out", arguments.out or Path("out", safe_name(scenario)))
     prepare()
-    episode = io.run(scenario, progress=True)
+    if arguments.bag is None:
+        episode = io.run(scenario, progress=True)
+    else:
+        from dynastar.ros.recording import run_recorded
+
+        episode = run_recorded(scenario, arguments.bag, progress=True)
+        print(f"the recording is {arguments.bag}", file=sys.stderr)
     summary = metrics.measure(episode)._asdict()
     write_folder(folder, episode, summary, gif=not arguments.no_gif)
     print(f"what came of it is in {folder}", file=sys.stderr)

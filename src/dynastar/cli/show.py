@@ -47,3 +47,15 @@ def _shown(value: Any) -> str:
 def _unit(name: str, value: Any) -> str:
     unit = UNITS.get(name.removeprefix("mean_"), "")
     return f" {unit}" if unit and isinstance(value, float | int) else ""
+
+
+def side_by_side(tables: Mapping[str, Mapping[str, Any]]) -> str:
+    """Tables by name in aligned columns, a row for each of their keys; None is a dash."""
+    keys = list(dict.fromkeys(key for table in tables.values() for key in table))
+    rows = [["", *tables]]
+    rows += [[key, *(_shown(table.get(key)) for table in tables.values())] for key in keys]
+    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
+    return "\n".join(
+        "  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip()
+        for row in rows
+    )

@@ -120,7 +120,12 @@ def configured(
     preset: str = "default", overrides: Mapping[str, Any] | None = None
 ) -> NavigatorConfig:
     """A preset with ``overrides``, nested tables by field name; ConfigError names what is wrong."""
-    return _merged(choose(preset, PRESETS, "preset"), overrides or {}, "")
+    return changed(choose(preset, PRESETS, "preset"), overrides or {})
+
+
+def changed(config: NavigatorConfig, overrides: Mapping[str, Any]) -> NavigatorConfig:
+    """``config`` with ``overrides``, nested tables by field name; ConfigError names what is wrong."""
+    return _merged(config, overrides, "")
 
 
 def _merged(base: Any, overrides: Mapping[str, Any], where: str) -> Any:

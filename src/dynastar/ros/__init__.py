@@ -1,1 +1,1 @@
-"""ROS 2: the navigator and the simulator as nodes. Nothing here is imported without rclpy."""
+"""ROS 2: its messages to dynastar and back, nodes that need rclpy, recordings that need rosbags."""

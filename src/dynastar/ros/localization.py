@@ -1,4 +1,4 @@
-"""Where the robot is in the map: odometry, corrected by a localisation where there is one."""
+"""Where the robot is in the map: odometry, corrected by a localization where there is one."""
 
 import math
 from collections import deque
@@ -9,7 +9,7 @@ from dynastar.geometry import Pose2D, Twist, compose, inverse
 from dynastar.navigator import RobotState
 from dynastar.robot import arc
 
-PoseSource = Literal["odom", "amcl"]
+PoseSource = Literal["odom", "amcl", "tf"]
 KEPT = 5.0  # s of odometry
 LONGEST = 0.5  # s by which a pose is carried on at its twist
 

@@ -50,19 +50,21 @@ def run(make: Callable[[], Node], arguments: Sequence[str]) -> int:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda number, frame: stopping.append(number))
     rclpy.init(args=list(arguments), signal_handler_options=SignalHandlerOptions.NO)
-    node = make()
+    node = None
     executor = SingleThreadedExecutor()
-    executor.add_node(node)
     try:
+        node = make()
+        executor.add_node(node)
         while not stopping and rclpy.ok():
             executor.spin_once(timeout_sec=0.1)
     finally:
-        if hasattr(node, "stop"):
+        if node is not None and hasattr(node, "stop"):
             node.stop()
             for publisher in node.publishers:
                 if publisher.topic_name.endswith("cmd_vel"):
                     publisher.wait_for_all_acked(Duration(seconds=FAREWELL))
         executor.shutdown()
-        node.destroy_node()
+        if node is not None:
+            node.destroy_node()
         rclpy.try_shutdown()
     return 0

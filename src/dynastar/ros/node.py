@@ -1,44 +1,44 @@
-"""The navigator as a ROS 2 node: messages in, ``Navigator.command``, messages out."""
+"""The navigator as a ROS 2 node: messages to the driver, its commands to cmd_vel."""
 
 import math
+import time
+from importlib import import_module
+from pathlib import Path
 from typing import Any
 
-from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped, TwistStamped
-from geometry_msgs.msg import Twist as TwistMessage
-from nav_msgs.msg import OccupancyGrid as GridMessage
-from nav_msgs.msg import Odometry
 from nav_msgs.srv import GetPlan
 from rcl_interfaces.msg import SetParametersResult
+from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.qos import QoSProfile, ReliabilityPolicy
-from sensor_msgs.msg import LaserScan as ScanMessage
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.serialization import serialize_message
 from std_srvs.srv import Trigger
 
 from dynastar.errors import DynastarError, InputError
-from dynastar.geometry import Pose2D, Twist
-from dynastar.grid import OccupancyGrid
-from dynastar.masks import SpeedScale, with_keepout, with_speed_limits
-from dynastar.navigator import Navigator, RobotState
+from dynastar.geometry import Twist
 from dynastar.planning import plan
-from dynastar.ros.convert import (
-    check_frame,
-    goal_of,
-    grid_of,
-    path_message,
-    pose_of,
-    scan_of,
-    seconds,
-    stamp_of,
-)
-from dynastar.ros.localization import Localization
+from dynastar.ros.bag import BagWriter
+from dynastar.ros.driver import REQUESTS, TAKES, Driver, start_request
+from dynastar.ros.incoming import goal_of
+from dynastar.ros.middleware import make, message_class
+from dynastar.ros.outgoing import Messages
 from dynastar.ros.parameters import Parameters
-from dynastar.ros.publishing import LATCHED, Publishers
-from dynastar.scan import LaserScan
+from dynastar.ros.settings import flat, nested
+from dynastar.ros.shown import SHOWS, Shown
 
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 SENSORS = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
-JUMP = 0.5  # s by which a clock that goes back, or a stamp ahead of it, is another time
-NOWHERE = Pose2D(math.nan, math.nan, math.nan)
+FRAMES = QoSProfile(depth=100)
+FRAMES_FIXED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+QUALITY = {"/tf": FRAMES, "/tf_static": FRAMES_FIXED, "/diagnostics": QoSProfile(depth=10)}
+QUALITY |= {"scan": SENSORS, "odom": SENSORS}
+LATCHES = ("map", "keepout_filter_mask", "speed_filter_mask", "amcl_pose", "plan")
+
+
+def quality(topic: str) -> QoSProfile:
+    """The quality of service that ROS 2 uses for a topic."""
+    return LATCHED if topic in LATCHES else QUALITY.get(topic, QoSProfile(depth=1))
 
 
 class NavigatorNode(Node):  # type: ignore[misc]
@@ -48,262 +48,210 @@ class NavigatorNode(Node):  # type: ignore[misc]
         super().__init__("dynastar", **options)
         self.parameters = Parameters(self)
         settings = self.parameters.settings
-        self.navigator: Navigator | None = None
-        self.localization = Localization(settings.pose_source)
-        self._shown = Publishers(self, settings.global_frame)
-        self._map: GridMessage | None = None
-        self._grid: OccupancyGrid | None = None
-        self._masks: dict[str, GridMessage] = {}
-        self._scan: LaserScan | None = None
-        self._taken = False  # whether the newest scan has been given to the navigator
-        self._ticked = self._now = -math.inf
-        self._refused = ""
-        kind = TwistStamped if settings.enable_stamped_cmd_vel else TwistMessage
-        self._command = self.create_publisher(kind, "cmd_vel", 1)
+        self.driver = Driver(settings, self.parameters.robot, self.parameters.config)
+        self._out = Messages(make)
+        self._bag = BagWriter(Path(settings.bag), aside=False) if settings.bag else None
+        self._ticked = -math.inf
+        self._clock_read, self._clock_moved = -math.inf, time.monotonic()
+        twist = "TwistStamped" if settings.enable_stamped_cmd_vel else "Twist"
+        self._kinds = {**TAKES, **SHOWS, "cmd_vel": f"geometry_msgs/msg/{twist}"}
+        self._outlets = {
+            topic: self.create_publisher(message_class(self._kinds[topic]), topic, quality(topic))
+            for topic in (*SHOWS, "cmd_vel")
+        }
+        self._shown = Shown(
+            self._out, settings.global_frame, self.get_name(), self._publish, self._wanted
+        )
+        robot, config = self.parameters.robot, self.parameters.config
+        self._note_request(start_request(settings, robot, config))
         self._subscribe()
-        self.create_timer(0.2 * self.parameters.config.period, self._timer)
+        self._actions = self._serve()
+        steady = Clock(
+            clock_type=ClockType.STEADY_TIME
+        )  # goes on when a simulator's clock does not
+        self.create_timer(0.2 * self.parameters.config.period, self._timer, clock=steady)
         self.add_on_set_parameters_callback(self._set_parameters)
         self.get_logger().info(f"{settings.robot}, preset {settings.preset}: waiting for a map")
 
     def _subscribe(self) -> None:
-        self.create_subscription(GridMessage, "map", self._on_map, LATCHED)
-        for mask in ("keepout_filter_mask", "speed_filter_mask"):
-            take = lambda message, mask=mask: self._on_mask(mask, message)  # noqa: E731
-            self.create_subscription(GridMessage, mask, take, LATCHED)
-        self.create_subscription(ScanMessage, "scan", self._on_scan, SENSORS)
-        self.create_subscription(Odometry, "odom", self._on_odometry, SENSORS)
-        self.create_subscription(PoseStamped, "goal_pose", self._on_goal, 1)
-        self.create_subscription(PoseWithCovarianceStamped, "amcl_pose", self._on_pose, LATCHED)
+        for topic, kind in TAKES.items():
+            if message_class(kind) is not None:  # tf2_msgs is not always installed
+                take = lambda message, topic=topic: self._take(topic, message)  # noqa: E731
+                self.create_subscription(message_class(kind), topic, take, quality(topic))
+            elif self.parameters.settings.pose_source == "tf":
+                raise InputError("'pose_source' is tf, which needs the package tf2_msgs")
+
+    def _serve(self) -> Any:
+        """The services, and Nav2's actions where their types are installed; those, or None."""
         self.create_service(GetPlan, "make_plan", self._make_plan)
         self.create_service(Trigger, "~/cancel", self._cancel)
         self.create_service(Trigger, "~/clear", self._clear)
+        try:
+            types = import_module("nav2_msgs.action")
+        except ImportError:
+            self.get_logger().info("without NavigateToPose: nav2_msgs is not installed")
+            return None
+        from dynastar.ros.actions import ACTIONS, Actions
+
+        kinds = {name: getattr(types, kind.split("/")[-1]) for name, kind in ACTIONS.items()}
+        frame = self.parameters.settings.global_frame
+        return Actions(self, kinds, frame, self._out, self._request)
 
     # -- what comes in ----------------------------------------------------------------------------
 
-    def _on_map(self, message: GridMessage) -> None:
-        self._map = message
-        self._take_map()
+    def _take(self, topic: str, message: Any) -> None:
+        self._record(topic, message, self._time())
+        words = self.driver.take(topic, message)
+        if words:
+            self.get_logger().warning(words, throttle_duration_sec=1.0)
+        elif topic == "map":
+            grid = self.driver.grid
+            assert grid is not None
+            self._shown.reset()
+            self.get_logger().info(f"map: {grid.columns} x {grid.rows} cells, {grid.extent()}")
+        elif topic == "goal_pose" and self._actions is not None:
+            self._actions.replaced()
+        if topic == "scan":
+            self._tick()
 
-    def _on_mask(self, mask: str, message: GridMessage) -> None:
-        self._masks[mask] = message
-        if self._map is not None:
-            self._take_map()
+    def _request(self, **wanted: Any) -> None:
+        """Carries out a request of a service, an action or a parameter, and records it."""
+        self._note_request(self.driver.request(**wanted))
 
-    def _take_map(self) -> None:
-        """A navigator for the map and the masks, or the present one with another map."""
-        settings, frame = self.parameters.settings, self.parameters.settings.global_frame
-        assert self._map is not None
-        try:
-            grid = grid_of(self._map, frame)
-            if "keepout_filter_mask" in self._masks:
-                grid = with_keepout(grid, grid_of(self._masks["keepout_filter_mask"], frame))
-            if "speed_filter_mask" in self._masks:
-                scale = SpeedScale(
-                    settings.speed_filter_type,
-                    settings.speed_filter_base,
-                    settings.speed_filter_multiplier,
-                )
-                mask = grid_of(self._masks["speed_filter_mask"], frame)
-                grid = with_speed_limits(grid, mask, self.parameters.robot.limits.v_max, scale)
-        except DynastarError as error:
-            self._refuse(str(error))
-            return
-        self._grid = grid
-        if self.navigator is None:
-            self.navigator = self._new_navigator()
-        else:
-            self.navigator.set_map(grid)
-        self._shown.reset()
-        self.get_logger().info(f"map: {grid.columns} x {grid.rows} cells, {grid.extent()}")
-
-    def _on_scan(self, message: ScanMessage) -> None:
-        lidar = self.parameters.robot.lidar
-        self._scan = scan_of(message, Pose2D(lidar.x, lidar.y, lidar.theta))
-        self._taken = False
-        self._tick()
-
-    def _on_odometry(self, message: Odometry) -> None:
-        twist = message.twist.twist
-        try:
-            self.localization.add_odometry(
-                seconds(message.header.stamp),
-                pose_of(message.pose.pose),
-                Twist(float(twist.linear.x), float(twist.angular.z)),
-            )
-        except InputError as error:
-            self._refuse(str(error))
-
-    def _on_pose(self, message: PoseWithCovarianceStamped) -> None:
-        if self.parameters.settings.pose_source != "amcl":
-            return
-        try:
-            check_frame("the pose", message.header.frame_id, self.parameters.settings.global_frame)
-            self.localization.add_pose(seconds(message.header.stamp), pose_of(message.pose.pose))
-        except InputError as error:
-            self._refuse(str(error))
-
-    def _on_goal(self, message: PoseStamped) -> None:
-        """Drives to a goal in place of the present one; one that cannot be is refused, and it goes on."""
-        try:
-            goal = goal_of(message, self.parameters.settings.global_frame)
-            if self.navigator is None:
-                raise InputError("there is no map yet")
-            self.navigator.planning_map.grid.world_to_cell(goal.x, goal.y)
-            self.navigator.set_goal(goal)
-        except DynastarError as error:
-            self._refuse(f"the goal is refused: {error}")
-
-    def _refuse(self, words: str) -> None:
-        self._refused = words
-        self.get_logger().warning(words, throttle_duration_sec=1.0)
+    def _note_request(self, words: str) -> None:
+        if self._bag is not None:
+            message = make("std_msgs/msg/String", data=words)
+            name = self.resolve_topic_name(REQUESTS)
+            data = serialize_message(message)
+            self._bag.write_cdr(name, "std_msgs/msg/String", self._clock_time(), data)
 
     # -- the loop ---------------------------------------------------------------------------------
 
     def _timer(self) -> None:
-        """Ticks if no scan has come for a little over a period."""
-        now = self._time()
-        if now - self._ticked > 1.2 * self.parameters.config.period:
+        """Ticks if no scan has come for a little over a period, or the clock stands still."""
+        now, steady, period = self._time(), time.monotonic(), self.parameters.config.period
+        if now != self._clock_read:
+            self._clock_read, self._clock_moved = now, steady
+            if self.driver.fault:
+                self._request(fault="")
+        elif steady - self._clock_moved > self.parameters.settings.data_age:
+            if not self.driver.fault:
+                self._request(fault="the clock stands still")
+            self._clock_moved += period  # the next tick of the stop
+            self._tick()
+        if now - self._ticked > 1.2 * period:
             self._tick()
 
+    def _clock_time(self) -> float:
+        """The clock in seconds, to the microsecond, as recordings have it."""
+        return 1e-6 * (self.get_clock().now().nanoseconds // 1000)
+
     def _time(self) -> float:
-        """The clock in seconds; a clock that went back starts everything anew, without a goal."""
-        now = self.get_clock().now().nanoseconds * 1e-9
-        if now < self._now - JUMP:
-            self._restart("the clock went back")
-        self._now = now
+        """The clock in seconds; one that went back starts everything anew, without a goal."""
+        now = self._clock_time()
+        if self.driver.jumped(now):
+            self._request(restart="the clock went back")
+            self._shown.reset()
+            self._ticked = -math.inf
+            self.get_logger().warning("the clock went back: the goal is dropped")
         return now
 
-    def _restart(self, reason: str) -> None:
-        self.localization.reset()
-        self._shown.reset()
-        self._scan, self._ticked = None, -math.inf
-        if self.navigator is not None:
-            self.navigator = self._new_navigator()
-        self._refuse(reason)
-
-    def _new_navigator(self) -> Navigator:
-        assert self._grid is not None
-        return Navigator(self._grid, self.parameters.robot, self.parameters.config)
-
     def _tick(self) -> None:
-        now = self._time()
-        self._ticked = now
-        if self.navigator is None:
-            self._send(Twist(0.0, 0.0), now)
-            self._shown.say("idle", self._refused or "no map has come yet", {}, now)
-            return
-        state, trouble = self._state(now)
-        scan = None if self._taken else self._scan
-        self._taken = True
-        command = self.navigator.command(state, scan)
-        self._send(command, now)
-        status = self.navigator.status
-        self._shown.show(self.navigator, status, state, now)
-        values = {
-            "v": f"{command.v:.3f} m/s",
-            "omega": f"{command.omega:.3f} rad/s",
-            "limited by": status.limited_by,
-            "goals left": status.goals_left,
-            "replans": status.replans,
-            "refused": self._refused,
-        }
-        self._shown.say(status.state, trouble or status.reason, values, now)
-
-    def _state(self, now: float) -> tuple[RobotState, str]:
-        """The state now, and what is wrong with odometry, scan or pose: then a state that stops."""
-        age = self.parameters.settings.data_age
-        stamp = self.localization.stamp
-        trouble = ""
-        if not math.isfinite(stamp):
-            trouble = "no odometry has come yet"
-        elif now - stamp > age:
-            trouble = f"the odometry is {now - stamp:.2f} s old"
-        elif stamp - now > JUMP:
-            trouble = f"the odometry is stamped {stamp - now:.2f} s ahead of the clock"
-        elif self._scan is None:
-            trouble = "no scan has come yet"
-        elif now - self._scan.stamp > age:
-            trouble = f"the scan is {now - self._scan.stamp:.2f} s old"
-        elif self._scan.stamp - now > JUMP:
-            trouble = f"the scan is stamped {self._scan.stamp - now:.2f} s ahead of the clock"
-        at = max(now, self._scan.stamp if self._scan is not None else now)
-        state = self.localization.at(at)
-        if state is None:
-            trouble = trouble or "the pose in the map is not known yet"
-        if trouble or state is None:
-            twist = Twist(0.0, 0.0) if state is None else state.twist
-            return RobotState(at, NOWHERE, twist), trouble
-        return state, ""
+        now = self._ticked = self._time()
+        tick = self.driver.tick(now)
+        self._send(tick.command, now)
+        values = {"v": f"{tick.command.v:.3f} m/s", "omega": f"{tick.command.omega:.3f} rad/s"}
+        if tick.status is not None and self.driver.navigator is not None:
+            self._shown.show(self.driver.navigator, tick.status, tick.pose, now)
+            values |= {
+                "limited by": tick.status.limited_by,
+                "goals left": str(tick.status.goals_left),
+                "replans": str(tick.status.replans),
+            }
+        values["refused"] = self.driver.refused
+        self._shown.say(tick.state, tick.reason, values, now, time.monotonic())
+        if self._actions is not None:
+            self._actions.update(tick, now)
 
     def _send(self, command: Twist, now: float) -> None:
-        stamped = self.parameters.settings.enable_stamped_cmd_vel
-        message = TwistStamped() if stamped else TwistMessage()
-        twist = message.twist if stamped else message
-        twist.linear.x, twist.angular.z = float(command.v), float(command.omega)
-        if stamped:
-            message.header.stamp = stamp_of(now)
-            message.header.frame_id = self.parameters.settings.base_frame
-        self._command.publish(message)
+        settings = self.parameters.settings
+        if settings.enable_stamped_cmd_vel:
+            message = self._out.twist_stamped(command, settings.base_frame, now)
+        else:
+            message = self._out.twist(command)
+        self._record("cmd_vel", message, now)
+        self._outlets["cmd_vel"].publish(message)
 
     def stop(self) -> None:
-        """The last word: zero."""
-        self._send(Twist(0.0, 0.0), self._now if math.isfinite(self._now) else 0.0)
+        """Ends the recording; the last word is zero."""
+        if self._bag is not None:
+            self._bag.close()
+            self._bag = None
+        self._send(Twist(0.0, 0.0), self._clock_time())
+
+    # -- what goes out ----------------------------------------------------------------------------
+
+    def _publish(self, topic: str, message: Any) -> None:
+        self._record(topic, message, self._ticked)
+        self._outlets[topic].publish(message)
+
+    def _wanted(self, topic: str) -> bool:
+        return self._bag is not None or self._outlets[topic].get_subscription_count() > 0
+
+    def _record(self, topic: str, message: Any, now: float) -> None:
+        if self._bag is not None:
+            name = self.resolve_topic_name(topic)
+            self._bag.write_cdr(name, self._kinds[topic], now, serialize_message(message))
 
     # -- services and parameters ------------------------------------------------------------------
 
     def _make_plan(self, request: GetPlan.Request, response: GetPlan.Response) -> GetPlan.Response:
         """A path on the map as it is known, for the robot's disc; empty, with a word, if there is none."""
-        frame = self.parameters.settings.global_frame
+        frame, grid = self.parameters.settings.global_frame, self.driver.grid
         try:
-            if self._grid is None:
+            if grid is None:
                 raise InputError("there is no map yet")
             start, goal = goal_of(request.start, frame), goal_of(request.goal, frame)
             found = plan(
-                self._grid,
+                grid,
                 (start.x, start.y),
                 (goal.x, goal.y),
                 radius=self.parameters.robot.footprint.circumscribed,
                 unknown=self.parameters.config.unknown,
             )
-            response.plan = path_message(found.path.points, frame, self._now)
+            response.plan = self._out.path(found.path.points, frame, self._clock_time())
         except DynastarError as error:
-            self._refuse(f"no plan: {error}")
+            self.get_logger().warning(f"no plan: {error}")
         return response
 
     def _cancel(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         del request
-        response.success = self.navigator is not None
-        response.message = "the goal is dropped" if response.success else "there is no map yet"
-        if self.navigator is not None:
-            self.navigator.cancel()
-        return response
+        return self._answer(response, "the goal is dropped", cancel=True)
 
     def _clear(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         del request
-        response.success = self.navigator is not None
-        response.message = "forgot what was sensed" if response.success else "there is no map yet"
-        if self.navigator is not None:
-            self.navigator.planning_map.forget()
-            self.navigator.sensing.local_map.forget()
+        return self._answer(response, "forgot what was sensed", clear=True)
+
+    def _answer(self, response: Any, done: str, **wanted: Any) -> Any:
+        try:
+            self._request(**wanted)
+            response.success, response.message = True, done
+        except DynastarError as error:
+            response.success, response.message = False, str(error)
         return response
 
     def _set_parameters(self, changes: list[Parameter]) -> SetParametersResult:
         """Takes in changed settings while running; refuses with the reason."""
-        fixed = [change.name for change in changes if not self.parameters.is_setting(change.name)]
-        fixed = [name for name in fixed if name != "use_sim_time"]
-        if fixed:
-            return SetParametersResult(
-                successful=False,
-                reason=f"{fixed[0]} is read at the start only: start the node anew",
-            )
         values = {change.name: change.value for change in changes if change.name != "use_sim_time"}
+        fixed = [name for name in values if not self.parameters.is_setting(name)]
+        if fixed:
+            reason = f"{fixed[0]} is read at the start only: start the node anew"
+            return SetParametersResult(successful=False, reason=reason)
         try:
             config = self.parameters.changed(values)
+            if values:
+                self._request(settings=nested(flat(config)))
         except DynastarError as error:
             return SetParametersResult(successful=False, reason=str(error))
         self.parameters.config = config
-        if self.navigator is not None and values:
-            goals = self.navigator.mission.goals
-            self.navigator = self._new_navigator()
-            self.navigator.set_goal(goals)
         return SetParametersResult(successful=True)

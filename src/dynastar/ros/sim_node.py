@@ -1,6 +1,7 @@
 """The simulator as a ROS 2 node: publishes map, scan and odometry of a scenario, takes cmd_vel."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,12 +15,14 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import LaserScan as ScanMessage
 from std_msgs.msg import String
 
-from dynastar.geometry import Twist
-from dynastar.ros.convert import grid_message, rotation_of, scan_message, stamp_of
-from dynastar.ros.publishing import LATCHED
+from dynastar.geometry import Pose2D, Twist
+from dynastar.ros.middleware import make, message_class
+from dynastar.ros.node import FRAMES, FRAMES_FIXED, LATCHED
+from dynastar.ros.outgoing import Messages
 from dynastar.simulation import Scenario, World
 from dynastar.simulation.run import start_pose
 
+ORIGIN = Pose2D(0.0, 0.0, 0.0)  # of odom in map: the simulated odometry does not drift
 TIMEOUT = 0.5  # s without a command after which the drive stops, as the robots' own do
 
 
@@ -35,7 +38,7 @@ class SimulatorNode(Node):  # type: ignore[misc]
             self.declare_parameter(name, True)
         self.scenario = scenario
         self.world = World(scenario, start_pose(scenario), scenario.seed)
-        self.contacts = 0
+        self.contacts, self._out = 0, Messages(make)
         self._command, self._heard = Twist(0.0, 0.0), -math.inf
         self._map = self.create_publisher(GridMessage, "map", LATCHED)
         self._scan = self.create_publisher(ScanMessage, "scan", QoSProfile(depth=5))
@@ -49,7 +52,8 @@ class SimulatorNode(Node):  # type: ignore[misc]
         else:
             self.create_subscription(TwistMessage, "cmd_vel", self._on_command, 1)
         grid = scenario.grid
-        self._map.publish(grid_message(grid.values, grid.frame, "map", self._stamp()))
+        self._map.publish(self._out.grid(grid.values, grid.frame, "map", self._stamp()))
+        self._transforms = self._publish_frames()
         self.create_timer(self.period, self._step)
         self.get_logger().info(f"{scenario.name}: {scenario.robot.name}, {grid.extent()}")
 
@@ -80,21 +84,26 @@ class SimulatorNode(Node):  # type: ignore[misc]
             self.get_logger().error(f"contact, {world.contact}, at {world.time:.2f} s")
         stamp = self._stamp()
         if self._clock_out is not None:
-            self._clock_out.publish(Clock(clock=stamp_of(stamp)))
+            self._clock_out.publish(Clock(clock=self._out.stamp(stamp)))
         pose = world.sensed_pose()
-        odometry = Odometry()
-        odometry.header.stamp, odometry.header.frame_id = stamp_of(stamp), "odom"
-        odometry.child_frame_id = "base_link"
-        odometry.pose.pose.position.x, odometry.pose.pose.position.y = pose.x, pose.y
-        odometry.pose.pose.orientation = rotation_of(pose.theta)
-        odometry.twist.twist.linear.x, odometry.twist.twist.angular.z = map(float, world.twist)
         if self.get_parameter("publish_odom").value:
-            self._odometry.publish(odometry)
-        if not self.get_parameter("publish_scan").value:
-            return
-        scan = scan_message(world.scan(), "laser")
-        scan.header.stamp = odometry.header.stamp
-        self._scan.publish(scan)
+            frames = ("odom", "base_link")
+            self._odometry.publish(self._out.odometry(pose, world.twist, frames, stamp))
+            if self._transforms is not None:
+                carried = [("map", "odom", ORIGIN), ("odom", "base_link", pose)]
+                self._transforms.publish(self._out.transforms(carried, stamp))
+        if self.get_parameter("publish_scan").value:
+            self._scan.publish(self._out.scan(replace(world.scan(), stamp=stamp), "laser"))
+
+    def _publish_frames(self) -> Any:
+        """Publishes where the lidar is; the publisher of the other frames, None without tf2_msgs."""
+        kind = message_class("tf2_msgs/msg/TFMessage")
+        if kind is None:
+            return None
+        self._fixed = self.create_publisher(kind, "/tf_static", FRAMES_FIXED)
+        mount = ("base_link", "laser", self.scenario.robot.lidar.mount)
+        self._fixed.publish(self._out.transforms([mount], self._stamp()))
+        return self.create_publisher(kind, "/tf", FRAMES)
 
 
 def as_parameters(scenario: Scenario) -> dict[str, Any]:

@@ -31,9 +31,9 @@ from rclpy.node import Node
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import String
 
-from dynastar.ros.publishing import LATCHED
+from dynastar.ros.node import LATCHED
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[3] / "examples"
 OFFICE = EXAMPLES / "office" / "office.toml"
 
 

@@ -1,0 +1,87 @@
+"""``dynastar replay``: the navigator's answers to the scans and odometry of a recording."""
+
+import argparse
+import csv
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dynastar.bench.settings import parsed
+from dynastar.cli.compiling import prepare
+from dynastar.cli.outputs import make_folder
+from dynastar.cli.show import as_json, side_by_side
+from dynastar.config import choose
+from dynastar.errors import InputError, MissingPackage
+from dynastar.extras import require
+from dynastar.io.files import write_json, written_aside
+from dynastar.robot import ROBOTS
+from dynastar.ros.driver import TAKES
+from dynastar.ros.replay import Instead, Replay, replay
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Replays the recording, once more with other settings if there are any, and compares."""
+    require("bags", "recordings need")
+    robot = None if arguments.robot is None else choose(arguments.robot, ROBOTS, "robot")
+    as_it_is = Instead(robot, pose_source=arguments.pose)
+    runs = {"as recorded" if robot is None else "default": as_it_is}
+    settings = parsed(arguments.set)
+    if arguments.preset is not None or settings:
+        words = [arguments.preset, *arguments.set]
+        name = " ".join(word for word in words if word is not None)
+        runs[name] = as_it_is._replace(preset=arguments.preset, settings=settings)
+    remap = _remap(arguments.topic)
+    bag = Path(arguments.bag)
+    folder = make_folder("--out", arguments.out or Path("out", f"replay-{bag.stem or 'bag'}"))
+    prepare()
+    found = {name: replay(bag, instead, remap, progress=True) for name, instead in runs.items()}
+    summaries = {name: one.summary() for name, one in found.items()}
+    write_folder(folder, found, summaries)
+    print(f"what came of it is in {folder}", file=sys.stderr)
+    print(as_json(summaries) if arguments.json else side_by_side(summaries))
+    return 0
+
+
+def _remap(pairs: list[str]) -> dict[str, str]:
+    """The table that ``NAME=TOPIC`` pairs stand for; InputError for one that is none."""
+    names = [name.strip("/") for name in TAKES]
+    table = {}
+    for pair in pairs:
+        name, equals, topic = pair.partition("=")
+        if not equals or not topic or name not in names:
+            raise InputError(
+                f"--topic {pair!r:.80}: expected NAME=TOPIC with NAME one of {', '.join(names)}"
+            )
+        table[name] = topic
+    return table
+
+
+def write_folder(folder: Path, found: Mapping[str, Replay], summaries: Mapping[str, Any]) -> None:
+    """Writes summary.json, commands.csv and figure.png."""
+    write_json(folder / "summary.json", summaries)
+    first = next(iter(found.values()))
+    series = {name: one.commands for name, one in found.items()}
+    if np.isfinite(first.recorded).any():
+        series = {"recorded": first.recorded, **series}
+    with (
+        written_aside(folder / "commands.csv") as aside,
+        aside.open("w", newline="", encoding="utf-8") as file,
+    ):
+        table = csv.writer(file)
+        columns = [f"{name} {what}" for name in series for what in ("v [m/s]", "omega [rad/s]")]
+        states = [f"{name} state" for name in found]
+        table.writerow(["time [s]", *columns, *states])
+        for row, time in enumerate(first.times):
+            numbers = [f"{value:.6g}" for one in series.values() for value in one[row]]
+            words = [one.states[row] for one in found.values()]
+            table.writerow([f"{time:.6f}", *numbers, *words])
+    try:
+        from dynastar.viewer.commands import draw_commands
+        from dynastar.viewer.sheet import save
+    except MissingPackage as missing:
+        print(f"without a picture: {missing}", file=sys.stderr)
+        return
+    save(draw_commands(first.times - first.times[:1].sum(), series), folder / "figure.png")

@@ -1,0 +1,268 @@
+"""Messages in, commands out: what the node does, and what a recording is replayed with."""
+
+import json
+import math
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from dynastar.config import checked
+from dynastar.errors import DynastarError, InputError
+from dynastar.geometry import Goal, Pose2D, Twist
+from dynastar.grid import OccupancyGrid
+from dynastar.masks import SpeedScale, with_keepout, with_speed_limits
+from dynastar.navigator import Navigator, NavigatorConfig, RobotState, Status
+from dynastar.robot import Robot
+from dynastar.ros.incoming import check_frame, goal_of, grid_of, pose_of, scan_of, seconds, twist_of
+from dynastar.ros.localization import Localization
+from dynastar.ros.settings import NodeSettings, flat, nested, robot_from, robot_table
+from dynastar.ros.transforms import Mount, Transforms
+from dynastar.scan import LaserScan
+
+JUMP = 0.5  # s by which a clock that goes back, or a stamp ahead of it, is another time
+NOWHERE = Pose2D(math.nan, math.nan, math.nan)
+
+TAKES = {
+    "map": "nav_msgs/msg/OccupancyGrid",
+    "keepout_filter_mask": "nav_msgs/msg/OccupancyGrid",
+    "speed_filter_mask": "nav_msgs/msg/OccupancyGrid",
+    "scan": "sensor_msgs/msg/LaserScan",
+    "odom": "nav_msgs/msg/Odometry",
+    "goal_pose": "geometry_msgs/msg/PoseStamped",
+    "amcl_pose": "geometry_msgs/msg/PoseWithCovarianceStamped",
+    "/tf": "tf2_msgs/msg/TFMessage",
+    "/tf_static": "tf2_msgs/msg/TFMessage",
+}
+REQUESTS = "dynastar/requests"  # what was asked for by services, actions and parameters, as JSON
+
+
+def start_request(settings: NodeSettings, robot: Robot, config: NavigatorConfig) -> str:
+    """The first request of a recording: what the driver was made of, as JSON."""
+    table = {
+        "settings": settings._asdict(),
+        "robot": robot_table(robot),
+        "config": nested(flat(config)),
+    }
+    return json.dumps({"start": table})
+
+
+def started(table: Mapping[str, Any]) -> "Driver":
+    """The driver that a recording's first request tells of; InputError where it cannot be."""
+    try:
+        settings = checked(NodeSettings, table["settings"], "settings")
+        config = checked(NavigatorConfig, table["config"], "config")
+        return Driver(settings, robot_from(table["robot"]), config)
+    except (KeyError, TypeError) as error:
+        raise InputError(f"a recording's start cannot be read: {error}") from None
+
+
+class Tick(NamedTuple):
+    """One answer: the command, the navigator's status, and the state and its reason in words."""
+
+    command: Twist
+    state: str
+    reason: str
+    status: Status | None = None
+    pose: RobotState | None = None
+
+
+class Driver:
+    """A navigator that is fed with messages, and brakes while they are missing, late or wrong."""
+
+    def __init__(self, settings: NodeSettings, robot: Robot, config: NavigatorConfig) -> None:
+        self.settings, self.robot, self.config = settings, robot, config
+        self.navigator: Navigator | None = None
+        self.grid: OccupancyGrid | None = None
+        self.localization = Localization(settings.pose_source)
+        self.transforms = Transforms()
+        self.refused = ""  # what was refused last, and why
+        self.fault = ""  # what else keeps it from driving, as a clock that stands still
+        self._odometry_frame = ""
+        self._map: Any = None
+        self._masks: dict[str, Any] = {}
+        self._scan: LaserScan | None = None
+        self._taken = False  # whether the newest scan has been given to the navigator
+        self._now = -math.inf
+
+    # -- what comes in ----------------------------------------------------------------------------
+
+    def take(self, topic: str, message: Any) -> str:
+        """Takes in a message of a topic in TAKES; what is wrong with it, in words, or ""."""
+        try:
+            if topic == "map":
+                self._map = message
+                self._take_map()
+            elif topic.endswith("_filter_mask"):
+                self._masks[topic] = message
+                if self._map is not None:
+                    self._take_map()
+            elif topic == "scan":
+                self._take_scan(message)
+            elif topic == "odom":
+                self._take_odometry(message)
+            elif topic == "goal_pose":
+                self.set_goals([goal_of(message, self.settings.global_frame)])
+            elif topic == "amcl_pose":
+                self._take_pose(message)
+            else:
+                self.transforms.add(message, static=topic.endswith("static"))
+        except DynastarError as error:
+            self.refused = f"the goal is refused: {error}" if topic == "goal_pose" else str(error)
+            return self.refused
+        return ""
+
+    def _take_map(self) -> None:
+        """A navigator for the map and the masks, or the present one with another map."""
+        settings, frame = self.settings, self.settings.global_frame
+        grid = grid_of(self._map, frame)
+        if "keepout_filter_mask" in self._masks:
+            grid = with_keepout(grid, grid_of(self._masks["keepout_filter_mask"], frame))
+        if "speed_filter_mask" in self._masks:
+            scale = SpeedScale(
+                settings.speed_filter_type,
+                settings.speed_filter_base,
+                settings.speed_filter_multiplier,
+            )
+            mask = grid_of(self._masks["speed_filter_mask"], frame)
+            grid = with_speed_limits(grid, mask, self.robot.limits.v_max, scale)
+        self.grid = grid
+        if self.navigator is None:
+            self.navigator = Navigator(grid, self.robot, self.config)
+        else:
+            self.navigator.set_map(grid)
+
+    def _take_scan(self, message: Any) -> None:
+        self._scan, self._taken = scan_of(message, self._mount(message.header.frame_id)), False
+
+    def _mount(self, frame: str) -> Mount:
+        """Where the lidar is: as given, else from tf where it is known, else as built in."""
+        if not self.settings.laser_pose:
+            found = self.transforms.planar(self.settings.base_frame, frame.lstrip("/"))
+            if found is not None:
+                return found
+        return Mount(self.robot.lidar.mount)
+
+    def _take_odometry(self, message: Any) -> None:
+        self._odometry_frame = message.header.frame_id.lstrip("/")
+        self.localization.add_odometry(
+            seconds(message.header.stamp),
+            pose_of(message.pose.pose),
+            twist_of(message.twist.twist),
+        )
+
+    def _take_pose(self, message: Any) -> None:
+        if self.settings.pose_source == "amcl":
+            check_frame("the pose", message.header.frame_id, self.settings.global_frame)
+            self.localization.add_pose(seconds(message.header.stamp), pose_of(message.pose.pose))
+
+    # -- what is asked for ------------------------------------------------------------------------
+
+    def set_goals(self, goals: list[Goal]) -> None:
+        """Drives to goals, in order, in place of the present ones; InputError leaves those."""
+        if self.navigator is None:
+            raise InputError("there is no map yet")
+        for goal in goals:
+            self.navigator.planning_map.grid.world_to_cell(goal.x, goal.y)
+        self.navigator.set_goal(goals)
+
+    def request(self, **wanted: Any) -> str:
+        """Carries out ``goals``, ``cancel``, ``clear``, ``settings``, ``restart`` or ``fault``, as JSON.
+
+        Raises InputError for what cannot be, and leaves everything as it was.
+        """
+        for name, value in wanted.items():
+            if name == "goals":
+                self.set_goals([Goal(*goal) for goal in value])
+            elif name == "settings":
+                self._change(value)
+            elif name == "restart":
+                self._restart(value)
+            elif name == "fault":
+                self.fault = str(value)
+            elif self.navigator is None:
+                raise InputError("there is no map yet")
+            elif name == "cancel":
+                self.navigator.cancel()
+            elif name == "clear":
+                self.navigator.planning_map.forget()
+                self.navigator.sensing.local_map.forget()
+            else:
+                raise InputError(f"unknown request '{name:.80}'")
+        return json.dumps(wanted)
+
+    def _change(self, values: Mapping[str, Any]) -> None:
+        """Other settings from now on; the goals stay."""
+        self.config = checked(NavigatorConfig, values)
+        if self.navigator is not None and self.grid is not None:
+            goals = self.navigator.mission.goals
+            self.navigator = Navigator(self.grid, self.robot, self.config)
+            self.navigator.set_goal(goals)
+
+    def _restart(self, reason: str) -> None:
+        """Forgets all but the map: time has jumped."""
+        self.localization.reset()
+        self.transforms.clear()
+        self._scan, self.refused = None, reason
+        if self.grid is not None:
+            self.navigator = Navigator(self.grid, self.robot, self.config)
+
+    # -- the loop ---------------------------------------------------------------------------------
+
+    def jumped(self, now: float) -> bool:
+        """Whether the clock (s) has gone back since it was asked last; it never does by a little."""
+        before, self._now = self._now, now
+        return now < before - JUMP
+
+    def tick(self, now: float) -> Tick:
+        """The command at ``now`` (s); braking, with the reason, where data are missing or late."""
+        if self.navigator is None:
+            reason = self.fault or self.refused or "no map has come yet"
+            return Tick(Twist(0.0, 0.0), "idle", reason)
+        state, trouble = self._state(now)
+        scan = None if self._taken else self._scan
+        self._taken = True
+        command = self.navigator.command(state, scan)
+        status = self.navigator.status
+        return Tick(command, status.state, trouble or status.reason, status, state)
+
+    def _state(self, now: float) -> tuple[RobotState, str]:
+        """The state now, and what is wrong with odometry, scan or pose: then a state that stops."""
+        stamp, age = self.localization.stamp, self.settings.data_age
+        scan = self._scan
+        trouble = self.fault or _late("odometry", stamp, now, age)
+        trouble = trouble or _late("scan", -math.inf if scan is None else scan.stamp, now, age)
+        trouble = trouble or self._follow_tf(now)
+        at = now if scan is None or scan.stamp - now > JUMP else max(now, scan.stamp)
+        state = self.localization.at(at)
+        if state is None:
+            trouble = trouble or "the pose in the map is not known yet"
+        if trouble or state is None:
+            twist = Twist(0.0, 0.0) if state is None else state.twist
+            return RobotState(at, NOWHERE, twist), trouble
+        return state, ""
+
+    def _follow_tf(self, now: float) -> str:
+        """Takes the pose of the odometry's frame in the map from tf; what is wrong, or ""."""
+        if self.settings.pose_source != "tf":
+            return ""
+        frame, parent = self._odometry_frame, self.settings.global_frame
+        try:
+            found = self.transforms.planar(parent, frame)
+        except InputError as error:
+            return str(error)
+        if found is None:
+            return f"tf does not say where '{frame:.80}' is in '{parent}'"
+        if frame != parent and self.transforms.age(frame, now) > self.settings.pose_age:
+            return f"the transform of '{frame}' is {self.transforms.age(frame, now):.2f} s old"
+        self.localization.map_to_odom = found.pose
+        return ""
+
+
+def _late(what: str, stamp: float, now: float, age: float) -> str:
+    """What is wrong with data of a stamp, in words, or ""."""
+    if not math.isfinite(stamp):
+        return f"no {what} has come yet"
+    if now - stamp > age:
+        return f"the {what} is {now - stamp:.2f} s old"
+    if stamp - now > JUMP:
+        return f"the {what} is stamped {stamp - now:.2f} s ahead of the clock"
+    return ""

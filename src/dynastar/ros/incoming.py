@@ -1,0 +1,89 @@
+"""ROS 2 messages to dynastar's types: sizes, frames and numbers are checked.
+
+Messages are used by their fields alone, so those of rclpy and those read from a bag do alike.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from dynastar.errors import InputError
+from dynastar.geometry import Goal, Pose2D, Twist, wrap_angle
+from dynastar.grid import GridFrame, OccupancyGrid
+from dynastar.io.files import MAX_CELLS
+from dynastar.ros.transforms import Mount
+from dynastar.scan import LaserScan
+
+UPRIGHT = 0.02  # rad, largest roll or pitch of a planar pose
+
+
+def seconds(stamp: Any) -> float:
+    """A message's stamp (builtin_interfaces/Time) in seconds."""
+    return float(stamp.sec) + 1e-9 * float(stamp.nanosec)
+
+
+def yaw_of(rotation: Any) -> float:
+    """The heading of a rotation about z, rad; InputError for another or none."""
+    x, y, z, w = rotation.x, rotation.y, rotation.z, rotation.w
+    norm = math.sqrt(x * x + y * y + z * z + w * w)
+    if not 0.9 < norm < 1.1:  # NaN is neither
+        raise InputError(
+            f"an orientation is ({x:g}, {y:g}, {z:g}, {w:g}): expected a unit quaternion"
+        )
+    if 2.0 * math.hypot(x, y) > UPRIGHT * norm:
+        raise InputError("an orientation is tilted: expected a rotation about z alone")
+    return wrap_angle(2.0 * math.atan2(z, w))
+
+
+def pose_of(pose: Any) -> Pose2D:
+    """A geometry_msgs/Pose in the plane; InputError where it is not finite or tilted."""
+    x, y = float(pose.position.x), float(pose.position.y)
+    if not (math.isfinite(x) and math.isfinite(y)):
+        raise InputError(f"a position is ({x:g}, {y:g}): expected finite numbers")
+    return Pose2D(x, y, yaw_of(pose.orientation))
+
+
+def twist_of(twist: Any) -> Twist:
+    """A geometry_msgs/Twist in the plane, with the numbers that it has."""
+    return Twist(float(twist.linear.x), float(twist.angular.z))
+
+
+def goal_of(message: Any, frame: str) -> Goal:
+    """The goal in a PoseStamped of ``frame``; InputError for another frame or a pose that is none."""
+    check_frame("a goal", message.header.frame_id, frame)
+    return Goal(*pose_of(message.pose))
+
+
+def check_frame(what: str, given: str, expected: str) -> None:
+    """Raises InputError unless a message is in the frame that is expected."""
+    if given.lstrip("/") != expected:
+        raise InputError(f"{what} is in the frame '{given:.80}': expected '{expected}'")
+
+
+def grid_of(message: Any, frame: str) -> OccupancyGrid:
+    """The map in an OccupancyGrid; InputError for another frame, size or values that are none."""
+    check_frame("the map", message.header.frame_id, frame)
+    info = message.info
+    rows, columns = int(info.height), int(info.width)
+    if not 0 < rows * columns <= MAX_CELLS:
+        raise InputError(f"the map is {columns} x {rows} cells: expected 1 to {MAX_CELLS}")
+    if len(message.data) != rows * columns:
+        raise InputError(f"the map has {len(message.data)} values: expected {columns} x {rows}")
+    values = np.frombuffer(message.data, dtype=np.int8).reshape(rows, columns)
+    pose = pose_of(info.origin)
+    return OccupancyGrid(values, GridFrame(float(info.resolution), *pose))
+
+
+def scan_of(message: Any, mount: Mount) -> LaserScan:
+    """The scan in a LaserScan message, of a lidar mounted at ``mount``."""
+    turn = -1.0 if mount.upside_down else 1.0
+    return LaserScan(
+        seconds(message.header.stamp),
+        np.asarray(message.ranges, dtype=np.float32),
+        turn * float(message.angle_min),
+        turn * float(message.angle_increment),
+        float(message.range_min),
+        float(message.range_max),
+        mount.pose,
+    )

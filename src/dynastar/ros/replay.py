@@ -1,0 +1,225 @@
+"""Recorded scans and odometry given to the navigator again: the same commands each time."""
+
+import json
+import math
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from tqdm import tqdm
+
+from dynastar.errors import DataError, DynastarError
+from dynastar.geometry import Twist
+from dynastar.navigator import configured
+from dynastar.navigator.config import changed
+from dynastar.robot import Robot
+from dynastar.ros.bag import BagReader
+from dynastar.ros.driver import REQUESTS, TAKES, Driver, started
+from dynastar.ros.incoming import seconds, twist_of
+from dynastar.ros.localization import PoseSource
+from dynastar.ros.settings import NodeSettings
+
+COMMANDS = "cmd_vel"
+NOTHING = Twist(math.nan, math.nan)
+# Settings that tell of the robot and the mission, which another preset leaves as they are.
+OF_THE_ROBOT = (
+    "period", "latency", "range_error", "pose_error", "heading_error", "goal_tolerance",
+    "heading_tolerance", "unknown",
+)  # fmt: skip
+SAME = 1e-6  # m/s and rad/s up to which two commands are the same
+
+
+class Topics(NamedTuple):
+    """Where a recording has what the driver takes: full names by short ones, and foreign recordings."""
+
+    names: dict[str, str]
+    of_dynastar: bool
+
+
+@dataclass(frozen=True)
+class Replay:
+    """What the navigator answered at each tick, beside what was recorded, NaN where nothing was."""
+
+    times: npt.NDArray[np.float64]  # (n,) s
+    commands: npt.NDArray[np.float64]  # (n, 2) m/s, rad/s
+    recorded: npt.NDArray[np.float64]  # (n, 2) m/s, rad/s
+    milliseconds: npt.NDArray[np.float64]  # (n,)
+    states: tuple[str, ...]
+    refused: tuple[str, ...]  # what was wrong with messages, each once
+
+    def summary(self) -> dict[str, Any]:
+        """Figures of a replay by name, with units."""
+        known = np.isfinite(self.recorded[:, 0])
+        off = np.abs(self.commands - self.recorded)[known]
+        names = sorted(set(self.states))
+        shares = {f"ticks {name}": self.states.count(name) for name in names}
+        return {
+            "ticks": len(self.times),
+            "time [s]": float(np.ptp(self.times)) if len(self.times) else 0.0,
+            **shares,
+            "mean v [m/s]": _mean(self.commands[:, 0]),
+            "mean |omega| [rad/s]": _mean(np.abs(self.commands[:, 1])),
+            "command median [ms]": _median(self.milliseconds),
+            "ticks as recorded": int((off <= SAME).all(axis=1).sum()) if known.any() else None,
+            "largest difference in v [m/s]": float(off[:, 0].max()) if known.any() else None,
+            "largest difference in omega [rad/s]": float(off[:, 1].max()) if known.any() else None,
+            "refused": "; ".join(self.refused) or None,
+        }
+
+
+def _mean(values: npt.NDArray[np.float64]) -> float:
+    return float(values.mean()) if len(values) else math.nan
+
+
+def _median(values: npt.NDArray[np.float64]) -> float:
+    return float(np.median(values)) if len(values) else math.nan
+
+
+class Instead(NamedTuple):
+    """What a replay takes instead of what was recorded; None and {} leave it."""
+
+    robot: Robot | None = None
+    preset: str | None = None
+    settings: Mapping[str, Any] = {}
+    pose_source: PoseSource | None = None
+
+    def driver(self, recorded: Driver | None) -> Driver:
+        """A driver like the recorded one, or a new one, but for what is given here."""
+        if recorded is None:
+            assert self.robot is not None
+            source = self.pose_source or "odom"
+            own = NodeSettings(robot=self.robot.name, pose_source=source)
+            config = configured(self.preset or "default", self.settings)
+            return Driver(own, self.robot, config)
+        own, config = recorded.settings, recorded.config
+        if self.pose_source is not None:
+            own = own._replace(pose_source=self.pose_source)
+        if self.preset is not None:
+            config = configured(self.preset, {name: getattr(config, name) for name in OF_THE_ROBOT})
+        config = changed(config, self.settings)
+        return Driver(own, self.robot or recorded.robot, config)
+
+    @property
+    def keeps_settings(self) -> bool:
+        """Whether the navigator's settings are the recorded ones."""
+        return self.preset is None and not self.settings
+
+
+def replay(
+    path: Path,
+    instead: Instead = Instead(),
+    remap: Mapping[str, str] | None = None,
+    progress: bool = False,
+) -> Replay:
+    """Gives a recording's messages to a navigator and returns what it answers.
+
+    A recording by dynastar says which robot and settings it was made with; others need
+    ``instead.robot``. dynastar's own are ticked when they were, others at each scan, by its stamp.
+    ``remap`` maps a topic as in ``driver.TAKES`` to the recording's name for it. Raises DataError for
+    a recording that cannot be read or lacks map, scan or odometry.
+    """
+    bag = BagReader(path)
+    try:
+        topics = _topics(bag, remap or {})
+        if not topics.of_dynastar and instead.robot is None:
+            raise DataError(f"{bag.path} is not by dynastar: name its robot with --robot")
+        ticks = list(_ticks(bag, topics, instead, progress))
+    finally:
+        bag.close()
+    refused = dict.fromkeys(tick.refused for tick in ticks if tick.refused)
+    return Replay(
+        np.array([tick.time for tick in ticks]),
+        np.array([tick.command for tick in ticks]).reshape(-1, 2),
+        np.array([tick.recorded for tick in ticks]).reshape(-1, 2),
+        np.array([tick.milliseconds for tick in ticks]),
+        tuple(tick.state for tick in ticks),
+        tuple(refused),
+    )
+
+
+def _topics(bag: BagReader, remap: Mapping[str, str]) -> Topics:
+    """The recording's names of what the driver takes; DataError where one is missing or not clear."""
+    names: dict[str, str] = {}
+    kinds = {**TAKES, REQUESTS: "std_msgs/msg/String", COMMANDS: ""}
+    for short, kind in kinds.items():
+        wanted = remap.get(short.lstrip("/"), short)
+        found = [
+            name
+            for name, type_ in bag.topics.items()
+            if (name == wanted or name.endswith("/" + wanted.lstrip("/")))
+            and (type_ == kind or not kind)
+        ]
+        if len(found) > 1 and "/" + wanted.lstrip("/") in found:
+            found = ["/" + wanted.lstrip("/")]
+        if len(found) > 1:
+            raise DataError(
+                f"{bag.path}: '{short}' may be {' or '.join(sorted(found))}: name one with "
+                f"--topic {short.lstrip('/')}={found[0]}"
+            )
+        if found:
+            names[short] = found[0]
+    for short in ("map", "scan", "odom"):
+        if short not in names:
+            have = ", ".join(sorted(bag.topics)) or "nothing"
+            raise DataError(
+                f"{bag.path}: no topic '{short}' of type {TAKES[short]} in it, which has {have}"
+            )
+    return Topics(names, REQUESTS in names)
+
+
+class _Tick(NamedTuple):
+    time: float
+    command: Twist
+    recorded: Twist
+    milliseconds: float
+    state: str
+    refused: str
+
+
+def _ticks(bag: BagReader, topics: Topics, instead: Instead, progress: bool) -> Iterator[_Tick]:
+    """Each tick of a replay, in order."""
+    driver = None if topics.of_dynastar else instead.driver(None)
+    shorts = {name: short for short, name in topics.names.items()}
+    refused = ""
+    for name, at, message in tqdm(
+        bag.messages(set(shorts)), desc="replay", unit=" messages", disable=not progress, delay=0.5
+    ):
+        short = shorts[name]
+        if short == REQUESTS:
+            driver, refused = _requested(driver, message.data, instead)
+        elif driver is not None:
+            if short != COMMANDS:
+                refused = driver.take(short, message) or refused
+            if topics.of_dynastar and short == COMMANDS:
+                yield _ticked(driver, at, twist_of(getattr(message, "twist", message)), refused)
+                refused = ""
+            elif not topics.of_dynastar and short == "scan":
+                yield _ticked(driver, seconds(message.header.stamp), NOTHING, refused)
+                refused = ""
+
+
+def _ticked(driver: Driver, now: float, recorded: Twist, refused: str) -> _Tick:
+    began = time.perf_counter()
+    tick = driver.tick(now)
+    took = 1e3 * (time.perf_counter() - began)
+    return _Tick(now, tick.command, recorded, took, tick.state, refused)
+
+
+def _requested(driver: Driver | None, words: str, instead: Instead) -> tuple[Driver | None, str]:
+    """Carries out a recorded request; settings that are given for the replay stay as they are."""
+    try:
+        wanted = dict(json.loads(words))
+    except (ValueError, TypeError) as error:
+        return driver, f"a request cannot be read: {error}"
+    if "start" in wanted:
+        return instead.driver(started(wanted["start"])), ""
+    try:
+        if driver is not None and (instead.keeps_settings or "settings" not in wanted):
+            driver.request(**wanted)
+    except (DynastarError, TypeError) as error:
+        return driver, str(error)
+    return driver, ""

@@ -1,0 +1,118 @@
+"""What a node is told besides the navigator's settings, and settings by dotted name."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Annotated, Any, Literal, NamedTuple, get_args, get_origin, get_type_hints
+
+from dynastar.config import Field, checked
+from dynastar.errors import ConfigError
+from dynastar.navigator import Preset
+from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot
+from dynastar.ros.localization import PoseSource
+
+AGE = Field("largest age of scan and odometry before the robot brakes", "s", 0.05, 2.0)
+
+
+class NodeSettings(NamedTuple):
+    """What a node is told besides the navigator's settings; read once, at the start."""
+
+    robot: Annotated[str, Field(f"one of {', '.join(ROBOTS)}")] = "turtlebot3_burger"
+    radius: Annotated[float, Field("of a round robot, 0: as built in", "m", 0.0, 10.0)] = 0.0
+    polygon: Annotated[
+        tuple[float, ...], Field("corners x, y, x, y ... of the footprint", "m", -10.0, 10.0)
+    ] = ()
+    preset: Annotated[Preset, Field("settings to start from")] = "default"
+    global_frame: Annotated[str, Field("frame of map, goals and poses")] = "map"
+    base_frame: Annotated[str, Field("frame of the robot")] = "base_link"
+    pose_source: Annotated[
+        PoseSource, Field("odometry alone, or corrected by amcl_pose or by tf")
+    ] = "odom"
+    laser_pose: Annotated[
+        tuple[float, ...],
+        Field("x, y, yaw of the lidar; empty: from tf, or as built in", "", -10.0, 10.0),
+    ] = ()
+    enable_stamped_cmd_vel: Annotated[bool, Field("TwistStamped instead of Twist")] = False
+    data_age: Annotated[float, AGE] = 0.2
+    pose_age: Annotated[
+        float, Field("largest age of the transform from odometry to map, with tf", "s", 0.1, 1e9)
+    ] = 2.0
+    bag: Annotated[str, Field("new folder to record to, as MCAP; empty: none")] = ""
+    speed_filter_type: Annotated[
+        Literal["percent", "absolute"], Field("meaning of the speed mask")
+    ] = "percent"
+    speed_filter_base: Annotated[float, Field("limit where the mask is 0", "", -1e3, 1e3)] = 100.0
+    speed_filter_multiplier: Annotated[float, Field("of the mask's value", "", -1e3, 1e3)] = -1.0
+
+
+def flat(values: Any, prefix: str = "") -> dict[str, Any]:
+    """The fields of a tuple of settings by dotted name."""
+    found: dict[str, Any] = {}
+    for name, value in values._asdict().items():
+        if hasattr(value, "_asdict"):
+            found |= flat(value, f"{prefix}{name}.")
+        else:
+            found[f"{prefix}{name}"] = value
+    return found
+
+
+def nested(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Dotted names as nested tables."""
+    tables: dict[str, Any] = {}
+    for name, value in values.items():
+        *path, last = name.split(".")
+        table = tables
+        for key in path:
+            table = table.setdefault(key, {})
+        table[last] = value
+    return tables
+
+
+def fields_of(cls: Any, prefix: str = "") -> dict[str, Field]:
+    """The Field of every setting by dotted name."""
+    found: dict[str, Field] = {}
+    for name, hint in get_type_hints(cls, include_extras=True).items():
+        if get_origin(hint) is Annotated:
+            notes = [note for note in get_args(hint)[1:] if isinstance(note, Field)]
+            found[f"{prefix}{name}"] = notes[0] if notes else Field("")
+        elif hasattr(hint, "_field_defaults"):
+            found |= fields_of(hint, f"{prefix}{name}.")
+    return found
+
+
+def robot_of(base: Robot, limits: Limits, own: NodeSettings) -> Robot:
+    """A robot built in, with the limits, footprint and lidar that were given instead."""
+    footprint, lidar = base.footprint, base.lidar
+    if own.radius > 0.0:
+        footprint = Footprint.disc(own.radius)
+    if own.polygon:
+        if len(own.polygon) % 2:
+            raise ConfigError(f"'polygon' has {len(own.polygon)} values: expected x, y, x, y ...")
+        footprint = Footprint.polygon(list(zip(own.polygon[::2], own.polygon[1::2], strict=True)))
+    if own.laser_pose:
+        if len(own.laser_pose) != 3:
+            raise ConfigError(f"'laser_pose' has {len(own.laser_pose)} values: expected x, y, yaw")
+        x, y, yaw = own.laser_pose
+        lidar = lidar._replace(x=x, y=y, theta=yaw)
+    return replace(base, limits=limits, footprint=footprint, lidar=lidar)
+
+
+def robot_table(robot: Robot) -> dict[str, Any]:
+    """A robot as plain data, for a recording."""
+    return {
+        "name": robot.name,
+        "limits": robot.limits._asdict(),
+        "lidar": robot.lidar._asdict(),
+        "radius": robot.footprint.circumscribed,
+        "polygon": robot.footprint.vertices.tolist(),
+    }
+
+
+def robot_from(table: Mapping[str, Any]) -> Robot:
+    """The robot of a ``robot_table``; ConfigError where it is none."""
+    try:
+        polygon = table["polygon"]
+        shape = Footprint.polygon(polygon) if polygon else Footprint.disc(float(table["radius"]))
+        limits = checked(Limits, table["limits"], "limits")
+        return Robot(str(table["name"]), limits, shape, checked(Lidar, table["lidar"], "lidar"))
+    except (KeyError, TypeError, ValueError) as error:
+        raise ConfigError(f"a robot's table cannot be read: {error}") from None

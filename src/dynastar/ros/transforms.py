@@ -1,0 +1,89 @@
+"""Frames from tf: the newest transform of each, and chains of them (REP 105)."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.errors import InputError
+from dynastar.geometry import Pose2D
+
+TILT = 0.05  # rad, between a plane and one that is taken for it
+LONGEST = 50  # frames in a chain
+
+Matrix = npt.NDArray[np.float64]
+
+
+class Mount(NamedTuple):
+    """A planar sensor on the robot: its pose, and whether its z axis points down."""
+
+    pose: Pose2D
+    upside_down: bool = False
+
+
+class Transforms:
+    """What /tf and /tf_static have said: for each frame its parent, the transform and its stamp."""
+
+    def __init__(self) -> None:
+        self._parents: dict[str, tuple[str, Matrix, float]] = {}
+
+    def clear(self) -> None:
+        """Drops what was said on /tf; what is static stays."""
+        self._parents = {
+            child: found for child, found in self._parents.items() if found[2] == math.inf
+        }
+
+    def add(self, message: Any, static: bool) -> None:
+        """Takes in a tf2_msgs/TFMessage; InputError where a transform is not finite."""
+        for one in message.transforms:
+            parent, child = (name.lstrip("/") for name in (one.header.frame_id, one.child_frame_id))
+            stamp = float(one.header.stamp.sec) + 1e-9 * float(one.header.stamp.nanosec)
+            known = self._parents.get(child)
+            if known is None or static or stamp >= known[2] or known[0] != parent:
+                stamp = math.inf if static else stamp
+                self._parents[child] = (parent, _matrix(one.transform, child), stamp)
+
+    def age(self, child: str, now: float) -> float:
+        """Seconds since the stamp of a frame's transform to its parent; -inf if it is static."""
+        return now - self._parents[child][2]
+
+    def planar(self, parent: str, child: str) -> Mount | None:
+        """Pose of a frame in another above it, None if they are not connected.
+
+        InputError where the planes of the two are tilted against each other.
+        """
+        found, frame = np.eye(4), child
+        for _ in range(LONGEST):
+            if frame == parent:
+                break
+            if frame not in self._parents:
+                return None
+            frame, matrix, _ = self._parents[frame]
+            found = matrix @ found
+        else:
+            raise InputError(f"the transforms above the frame '{child:.80}' form a loop")
+        up = found[2, 2]
+        if abs(up) < math.cos(TILT):
+            raise InputError(f"the frame '{child:.80}' is tilted against '{parent:.80}'")
+        pose = Pose2D(float(found[0, 3]), float(found[1, 3]), math.atan2(found[1, 0], found[0, 0]))
+        return Mount(pose, bool(up < 0.0))
+
+
+def _matrix(transform: Any, child: str) -> Matrix:
+    """A geometry_msgs/Transform as a homogeneous matrix (4, 4)."""
+    moved, turn = transform.translation, transform.rotation
+    q = np.array([turn.w, turn.x, turn.y, turn.z], dtype=np.float64)
+    p = np.array([moved.x, moved.y, moved.z], dtype=np.float64)
+    norm = math.sqrt(float(q @ q))
+    if not (np.isfinite(p).all() and 0.9 < norm < 1.1):
+        raise InputError(f"the transform of the frame '{child:.80}' is not finite, or no rotation")
+    w, x, y, z = q / norm
+    matrix = np.eye(4)
+    matrix[:3, :3] = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    matrix[:3, 3] = p
+    return matrix

@@ -1,0 +1,176 @@
+"""Messages in, commands out: what is late, wrong or missing brakes the robot and says why."""
+
+import json
+import math
+import re
+
+import numpy as np
+import pytest
+
+from dynastar.errors import InputError
+from dynastar.geometry import Goal, Pose2D, Twist
+from dynastar.navigator import configured
+from dynastar.robot import ROBOTS
+from dynastar.ros.bag import make
+from dynastar.ros.driver import Driver, start_request, started
+from dynastar.ros.outgoing import Messages
+from dynastar.ros.settings import NodeSettings
+
+OUT = Messages(make)
+ROOM = np.zeros((100, 100), np.int8)
+ROOM[[0, -1]] = ROOM[:, [0, -1]] = 100
+START = Pose2D(1.0, 2.5, 0.0)
+
+
+def a_map(values=ROOM):
+    return OUT.grid(values, (0.05, 0.0, 0.0), "map", 0.0)
+
+
+def a_goal(x, y, frame="map"):
+    pose = OUT.pose(Pose2D(x, y, 0.0))
+    return make("geometry_msgs/msg/PoseStamped", header=OUT.header(frame, 0.0), pose=pose)
+
+
+def a_scan(time, frame="laser"):
+    ranges = np.full(360, np.inf, np.float32)
+    angles = {"angle_min": 0.0, "angle_increment": math.tau / 360}
+    limits = {"range_min": 0.12, "range_max": 3.5, "ranges": ranges}
+    return make("sensor_msgs/msg/LaserScan", header=OUT.header(frame, time), **angles, **limits)
+
+
+def odometry(time, pose=START, twist=Twist(0.0, 0.0)):
+    return OUT.odometry(pose, twist, ("odom", "base_link"), time)
+
+
+def feed(driver, time, twist=Twist(0.0, 0.0)):
+    assert driver.take("odom", odometry(time, twist=twist)) == ""
+    assert driver.take("scan", a_scan(time)) == ""
+    return driver.tick(time)
+
+
+@pytest.fixture
+def driver():
+    made = Driver(NodeSettings(), ROBOTS["turtlebot3_burger"], configured("default"))
+    assert made.tick(0.0).reason == "no map has come yet"
+    assert made.take("map", a_map()) == ""
+    return made
+
+
+def test_it_drives_when_it_has_map_scan_odometry_and_goal(driver):
+    assert driver.tick(0.0).reason == "no odometry has come yet"
+    driver.take("odom", odometry(0.0))
+    assert driver.tick(0.0).reason == "no scan has come yet"
+    assert feed(driver, 0.05).state == "idle"
+    assert driver.take("goal_pose", a_goal(4.0, 2.5)) == ""
+    assert feed(driver, 0.1).command.v > 0.0
+
+
+@pytest.mark.parametrize(
+    ("after", "says"),
+    [
+        (lambda d: d.take("odom", odometry(0.5)), "the scan is 0.4"),
+        (lambda d: d.take("scan", a_scan(0.5)), "the odometry is 0.4"),
+        (lambda d: feed(d, 1.5), "ahead of the clock"),
+        (lambda d: d.request(fault="the clock stands still"), "the clock stands still"),
+    ],
+)
+def test_what_is_late_or_ahead_brakes_it(driver, after, says):
+    driver.take("goal_pose", a_goal(4.0, 2.5))
+    for k in range(5):
+        assert feed(driver, 0.05 + 0.01 * k, Twist(0.2, 0.0)).state == "following"
+    after(driver)
+    tick = driver.tick(0.5)
+    assert says in tick.reason
+    assert tick.state == "sensor_lost"
+    assert tick.command.v < 0.2
+
+
+def test_goals_that_cannot_be_leave_the_one_under_way(driver):
+    driver.take("goal_pose", a_goal(4.0, 2.5))
+    for goal, says in (
+        (a_goal(4.0, 2.5, "odom"), "frame 'odom'"),
+        (a_goal(math.nan, 2.5), "finite"),
+        (a_goal(400.0, 2.5), "outside|off the map|not on the map"),
+    ):
+        words = driver.take("goal_pose", goal)
+        assert words.startswith("the goal is refused")
+        assert re.search(says, words)
+        assert driver.navigator.mission.goals == [Goal(4.0, 2.5, 0.0)]
+
+
+def test_a_pose_from_tf_has_to_be_there_and_new():
+    own = NodeSettings(pose_source="tf", pose_age=1.0)
+    driver = Driver(own, ROBOTS["turtlebot3_burger"], configured("default"))
+    driver.take("map", a_map())
+    assert "tf does not say where 'odom' is in 'map'" in feed(driver, 0.0).reason
+    driver.take("/tf", OUT.transforms([("map", "odom", Pose2D(0.5, 0.0, 0.0))], 0.0))
+    tick = feed(driver, 0.05)
+    assert (tick.state, tick.pose.pose.x) == ("idle", 1.5)
+    assert "transform of 'odom' is 1.20 s old" in feed(driver, 1.2).reason
+    static = OUT.transforms([("map", "odom", Pose2D(0.5, 0.0, 0.0))], 0.0)
+    driver.take("/tf_static", static)
+    assert feed(driver, 9.0).state == "idle"
+
+
+def test_the_mount_of_the_lidar_is_from_tf_unless_it_is_given(driver):
+    driver.take("scan", a_scan(0.0))
+    assert driver._scan.mount == ROBOTS["turtlebot3_burger"].lidar.mount
+    driver.take("/tf_static", OUT.transforms([("base_link", "laser", Pose2D(0.1, 0.0, 1.0))], 0.0))
+    driver.take("scan", a_scan(0.1))
+    assert driver._scan.mount == pytest.approx((0.1, 0.0, 1.0))
+    driver.settings = driver.settings._replace(laser_pose=(0.0, 0.0, 0.0))
+    driver.take("scan", a_scan(0.2))
+    assert driver._scan.mount == ROBOTS["turtlebot3_burger"].lidar.mount
+
+
+def test_masks_become_keepout_zones_and_speed_limits(driver):
+    zone = np.zeros_like(ROOM)
+    zone[40:60, 40:60] = 100
+    assert driver.take("keepout_filter_mask", a_map(zone)) == ""
+    assert driver.grid.keepout.sum() == 400
+    assert driver.take("speed_filter_mask", a_map(zone // 2)) == ""
+    assert driver.grid.speed_limit[50, 50] == pytest.approx(0.11)
+    assert "expected 100 x 100" in driver.take("map", make_short())
+    assert driver.grid.keepout.sum() == 400
+
+
+def make_short():
+    message = a_map()
+    message.data = message.data[:-1]
+    return message
+
+
+def test_requests_are_carried_out_and_told(driver):
+    feed(driver, 0.0)
+    words = driver.request(goals=[(4.0, 2.5, None), (1.0, 1.0, 0.5)])
+    assert json.loads(words) == {"goals": [[4.0, 2.5, None], [1.0, 1.0, 0.5]]}
+    assert len(driver.navigator.mission.goals) == 2
+    driver.request(settings={"dwa": {"horizon": 2.5}})
+    assert driver.navigator.config.dwa.horizon == 2.5
+    assert len(driver.navigator.mission.goals) == 2
+    driver.request(cancel=True)
+    assert driver.navigator.mission.goals == []
+    driver.request(clear=True)
+    with pytest.raises(InputError, match="unknown request 'dance'"):
+        driver.request(dance=True)
+
+
+def test_a_clock_that_goes_back_drops_the_goal_and_the_data(driver):
+    feed(driver, 100.0)
+    driver.take("goal_pose", a_goal(4.0, 2.5))
+    assert not driver.jumped(100.0)
+    assert not driver.jumped(99.9)
+    assert driver.jumped(3.0)
+    driver.request(restart="the clock went back")
+    assert driver.tick(3.0).reason == "no odometry has come yet"
+    assert feed(driver, 3.05).state == "idle"
+
+
+def test_a_driver_can_be_made_again_from_its_first_request():
+    own, robot = NodeSettings(pose_source="amcl"), ROBOTS["jackal"]
+    config = configured("paper", {"latency": 0.1})
+    made = started(json.loads(start_request(own, robot, config))["start"])
+    assert (made.settings, made.config, made.robot.limits) == (own, config, robot.limits)
+    assert np.array_equal(made.robot.footprint.vertices, robot.footprint.vertices)
+    with pytest.raises(InputError):
+        started({"settings": {}})

@@ -1,0 +1,23 @@
+"""Where the robot is in the map, from odometry and a pose in the map."""
+
+import math
+
+import pytest
+
+from dynastar.errors import InputError
+from dynastar.geometry import Pose2D, Twist
+from dynastar.ros.localization import Localization
+
+
+def test_odometry_is_corrected_by_a_pose_in_the_map():
+    found = Localization("amcl")
+    assert found.at(0.0) is None
+    found.add_odometry(1.0, Pose2D(1.0, 0.0, 0.0), Twist(0.5, 0.0))
+    assert found.at(1.0) is None
+    found.add_pose(1.0, Pose2D(5.0, 5.0, math.pi / 2))
+    state = found.at(1.2)
+    assert state.pose == pytest.approx((5.0, 5.1, math.pi / 2))
+    found.add_odometry(0.5, Pose2D(9.0, 9.0, 0.0), Twist(0.0, 0.0))  # late: left out
+    assert found.stamp == 1.0
+    with pytest.raises(InputError, match="finite"):
+        found.add_odometry(2.0, Pose2D(math.nan, 0.0, 0.0), Twist(0.0, 0.0))

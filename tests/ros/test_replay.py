@@ -1,0 +1,167 @@
+"""Recordings: read by others, replayed to the last digit, and refused where they are none."""
+
+import collections
+import math
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dynastar import io
+from dynastar.cli import main
+from dynastar.errors import DataError
+from dynastar.geometry import Pose2D, Twist
+from dynastar.robot import ROBOTS
+from dynastar.ros.bag import BagReader, BagWriter, make
+from dynastar.ros.outgoing import Messages
+from dynastar.ros.recording import run_recorded
+from dynastar.ros.replay import Instead, replay
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+OUT = Messages(make)
+
+
+@pytest.fixture(scope="module")
+def office(tmp_path_factory):
+    """Twelve seconds of the office, and the episode."""
+    folder = tmp_path_factory.mktemp("bags") / "office"
+    scenario = replace(io.load_scenario(EXAMPLES / "office" / "office.toml"), time_limit=12.0)
+    return folder, run_recorded(scenario, folder)
+
+
+def test_an_independent_reader_finds_standard_messages(office):
+    reader = pytest.importorskip("mcap_ros2.reader")
+    counts = collections.Counter()
+    headings = []
+    for found in reader.read_ros2_messages(str(office[0] / "office.mcap")):
+        counts[found.channel.topic, found.schema.name] += 1
+        if found.channel.topic == "/odom":
+            headings.append(found.ros_msg.pose.pose.position.x)
+    episode = office[1]
+    ticks = len(episode.commands)
+    assert counts["/scan", "sensor_msgs/msg/LaserScan"] > 0.9 * ticks
+    assert counts["/odom", "nav_msgs/msg/Odometry"] == ticks
+    assert counts["/cmd_vel", "geometry_msgs/msg/Twist"] == ticks
+    assert counts["/map", "nav_msgs/msg/OccupancyGrid"] == 1
+    for topic, kind in (
+        ("/tf", "tf2_msgs/msg/TFMessage"),
+        ("/tf_static", "tf2_msgs/msg/TFMessage"),
+        ("/plan", "nav_msgs/msg/Path"),
+        ("/markers", "visualization_msgs/msg/MarkerArray"),
+        ("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray"),
+    ):
+        assert counts[topic, kind] > 0, topic
+    assert (office[0] / "metadata.yaml").is_file()
+    assert np.allclose(headings, episode.trajectory.poses[:, 0], atol=0.1)
+
+
+def test_a_replay_gives_the_recorded_commands_each_time(office):
+    first, again = replay(office[0]), replay(office[0] / "office.mcap")
+    assert np.array_equal(first.commands, first.recorded)
+    assert np.array_equal(first.commands, again.commands)
+    assert np.array_equal(first.commands, office[1].commands)
+    assert first.states == tuple(office[1].states)
+    assert first.refused == ()
+
+
+def test_other_settings_give_other_commands(office):
+    other = replay(office[0], Instead(settings={"dwa": {"horizon": 1.5}}))
+    paper = replay(office[0], Instead(preset="paper"))
+    for found in (other, paper):
+        assert len(found.commands) == len(office[1].commands)
+        assert not np.array_equal(found.commands, found.recorded)
+
+
+@pytest.mark.parametrize("feature", ["keepout", "speed_limit"])
+def test_masks_are_part_of_a_recording(feature, tmp_path):
+    names = [path for path in (EXAMPLES / "features").glob("*.toml") if feature in path.read_text()]
+    scenario = replace(io.load_scenario(names[0]), time_limit=5.0)
+    run_recorded(scenario, tmp_path / "bag")
+    found = replay(tmp_path / "bag")
+    assert np.array_equal(found.commands, found.recorded)
+    reader = BagReader(tmp_path / "bag")
+    assert any("filter_mask" in topic for topic in reader.topics)
+    reader.close()
+
+
+def foreign(folder, topics=("/robot/map", "/robot/front/scan", "/robot/odom", "/goal_pose")):
+    """A recording by something else: no requests, wall-clock receive times, other names."""
+    names = dict(zip(("map", "scan", "odom", "goal"), topics, strict=True))
+    values = np.zeros((100, 100), np.int8)
+    values[[0, -1]] = values[:, [0, -1]] = 100
+    goal = {"header": OUT.header("map", 0.0), "pose": OUT.pose(Pose2D(4.0, 2.5, 0.0))}
+    with BagWriter(folder) as bag:
+        wall, pose = 1.7e9, Pose2D(1.0, 2.5, 0.0)
+        grid = OUT.grid(values, (0.05, 0.0, 0.0), "map", 0.0)
+        bag.write(names["map"], "nav_msgs/msg/OccupancyGrid", wall, grid)
+        goal_message = make("geometry_msgs/msg/PoseStamped", **goal)
+        for k in range(20):
+            time = 0.1 * k
+            odometry = OUT.odometry(pose, Twist(0.0, 0.0), ("odom", "base"), time)
+            bag.write(names["odom"], "nav_msgs/msg/Odometry", wall + time, odometry)
+            scan = make(
+                "sensor_msgs/msg/LaserScan",
+                header=OUT.header("laser", time),
+                angle_increment=math.tau / 360,
+                range_min=0.12,
+                range_max=3.5,
+                ranges=np.full(360, np.inf, np.float32),
+            )
+            bag.write(names["scan"], "sensor_msgs/msg/LaserScan", wall + time, scan)
+            if k == 5:
+                bag.write(names["goal"], "geometry_msgs/msg/PoseStamped", wall + time, goal_message)
+
+
+def test_recordings_of_others_are_ticked_at_each_scan(tmp_path):
+    foreign(tmp_path / "bag")
+    with pytest.raises(DataError, match="name its robot with --robot"):
+        replay(tmp_path / "bag")
+    found = replay(tmp_path / "bag", Instead(ROBOTS["turtlebot3_burger"]))
+    assert found.times == pytest.approx(0.1 * np.arange(20))
+    assert found.states[:6] == ("idle",) * 6
+    assert found.commands[-1, 0] > 0.0
+    assert np.isnan(found.recorded).all()
+    assert found.summary()["ticks as recorded"] is None
+
+
+def test_recordings_that_are_none(tmp_path, capsys):
+    foreign(tmp_path / "bag", ("/map", "/a/scan", "/odom", "/b/goal_pose"))
+    shutil.copytree(tmp_path / "bag", tmp_path / "cut")
+    file = next((tmp_path / "cut").glob("*.mcap"))
+    file.write_bytes(file.read_bytes()[:3000])
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "words.mcap").write_text("no recording")
+    for name in ("nowhere", "cut", "empty", "words.mcap"):
+        with pytest.raises(DataError, match=name):
+            replay(tmp_path / name, Instead(ROBOTS["jackal"]))
+    with pytest.raises(DataError, match="no topic 'scan' of type sensor_msgs"):
+        replay(tmp_path / "bag", Instead(ROBOTS["jackal"]), {"scan": "rear/scan"})
+    with pytest.raises(DataError, match="a new folder"):
+        BagWriter(tmp_path / "bag")
+    assert main(["replay", str(tmp_path / "nowhere")]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_a_recording_that_fails_leaves_nothing(tmp_path):
+    with pytest.raises(KeyError), BagWriter(tmp_path / "bag") as bag:
+        bag.write("/a", "no_msgs/msg/Such", 0.0, OUT.text("a"))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_commands(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    name = str(EXAMPLES / "features" / "keepout.toml")
+    assert main(["run", name, "--bag", "bag", "--no-gif", "--out", "run"]) == 0
+    assert main(["run", name, "--bag", "bag", "--out", "run"]) == 2
+    assert main(["replay", "bag", "--set", "dwa.horizon=2"]) == 0
+    table = capsys.readouterr().out
+    assert "dwa.horizon=2" in table
+    folder = tmp_path / "out" / "replay-bag"
+    assert (folder / "figure.png").stat().st_size > 5000
+    rows = (folder / "commands.csv").read_text().splitlines()
+    assert rows[0].startswith("time [s],recorded v [m/s],recorded omega [rad/s],as recorded v")
+    assert main(["replay", "bag", "--topic", "scan"]) == 2
+    assert main(["replay", "bag", "--set", "dwa.horizont=2"]) == 2
+    assert "dwa.horizon" in capsys.readouterr().err
