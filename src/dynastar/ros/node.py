@@ -69,7 +69,8 @@ class NavigatorNode(Node):  # type: ignore[misc]
         steady = Clock(
             clock_type=ClockType.STEADY_TIME
         )  # goes on when a simulator's clock does not
-        self.create_timer(0.2 * self.parameters.config.period, self._timer, clock=steady)
+        late = 1.2 * self.parameters.config.period
+        self._watchdog = self.create_timer(late, self._tick, clock=steady)
         self.add_on_set_parameters_callback(self._set_parameters)
         self.get_logger().info(f"{settings.robot}, preset {settings.preset}: waiting for a map")
 
@@ -127,20 +128,17 @@ class NavigatorNode(Node):  # type: ignore[misc]
 
     # -- the loop ---------------------------------------------------------------------------------
 
-    def _timer(self) -> None:
-        """Ticks if no scan has come for a little over a period, or the clock stands still."""
-        now, steady, period = self._time(), time.monotonic(), self.parameters.config.period
+    def _check_clock(self, now: float) -> None:
+        """Notes whether the clock goes on, by the steady clock."""
+        steady = time.monotonic()
         if now != self._clock_read:
             self._clock_read, self._clock_moved = now, steady
             if self.driver.fault:
                 self._request(fault="")
-        elif steady - self._clock_moved > self.parameters.settings.data_age:
-            if not self.driver.fault:
-                self._request(fault="the clock stands still")
-            self._clock_moved += period  # the next tick of the stop
-            self._tick()
-        if now - self._ticked > 1.2 * period:
-            self._tick()
+        elif (
+            not self.driver.fault and steady - self._clock_moved > self.parameters.settings.data_age
+        ):
+            self._request(fault="the clock stands still")
 
     def _clock_time(self) -> float:
         """The clock in seconds, to the microsecond, as recordings have it."""
@@ -157,7 +155,10 @@ class NavigatorNode(Node):  # type: ignore[misc]
         return now
 
     def _tick(self) -> None:
+        """A command: at every scan, and a little over a period after the last one where none comes."""
         now = self._ticked = self._time()
+        self._watchdog.reset()
+        self._check_clock(now)
         tick = self.driver.tick(now)
         self._send(tick.command, now)
         values = {"v": f"{tick.command.v:.3f} m/s", "omega": f"{tick.command.omega:.3f} rad/s"}

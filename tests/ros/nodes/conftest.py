@@ -1,5 +1,6 @@
 """A client of the nodes, and the nodes as processes, apart from all other ROS on this machine."""
 
+import math
 import os
 import random
 import signal
@@ -9,6 +10,7 @@ import time
 import warnings
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 pytest.importorskip("rclpy", reason="no rclpy here: `make test-ros` has an environment with it")
@@ -28,10 +30,16 @@ from nav_msgs.msg import Path as PathMessage
 from rcl_interfaces.msg import Parameter, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from rclpy.node import Node
+from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import String
 
+from dynastar.geometry import Pose2D
+from dynastar.geometry import Twist as DynastarTwist
+from dynastar.ros.middleware import make
 from dynastar.ros.node import LATCHED
+from dynastar.ros.outgoing import Messages
+from dynastar.scan import LaserScan as DynastarScan
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 OFFICE = EXAMPLES / "office" / "office.toml"
@@ -159,3 +167,48 @@ def office(client, processes):
     )
     client.wait_for("no goal")
     return client
+
+
+class Room:
+    """A simulator of a test's own making: an empty room, a clock that does what is asked."""
+
+    def __init__(self, client) -> None:
+        self.node, self.out, self.time, self.x = client.node, Messages(make), 10.0, 2.0
+        self.each = lambda: None
+        publish = self.node.create_publisher
+        self.clock = publish(Clock, "/clock", 1)
+        self.scans, self.odometry = publish(LaserScan, "scan", 5), publish(Odometry, "odom", 5)
+        values = np.zeros((100, 100), np.int8)
+        values[[0, -1]] = values[:, [0, -1]] = 100
+        client.maps.publish(self.out.grid(values, (0.05, 0.0, 0.0), "map", 0.0))
+
+    def run(self, client, seconds: float, runs: bool = True, data: bool = True) -> None:
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            if runs:
+                self.time += 0.05
+            v = client.commands[-1][1] if client.commands else 0.0
+            self.x += 0.05 * v
+            self.clock.publish(Clock(clock=self.out.stamp(self.time)))
+            self.each()
+            if data:
+                pose, frames = Pose2D(self.x, 2.5, 0.0), ("odom", "base_link")
+                self.odometry.publish(
+                    self.out.odometry(pose, DynastarTwist(v, 0.0), frames, self.time)
+                )
+                ranges = np.full(360, np.inf, np.float32)
+                scan = DynastarScan(self.time, ranges, 0.0, math.tau / 360, 0.12, 3.5)
+                self.scans.publish(self.out.scan(scan, "laser"))
+            client.spin(0.05)
+
+
+@pytest.fixture
+def room_of(client, processes):
+    """Starts a node with parameters in an empty room, 5 m square, with a clock of its own."""
+
+    def made(*words: str) -> Room:
+        client.navigator = processes.start("ros", "--ros-args", "-p", "use_sim_time:=true", *words)
+        client.wait_for("idle")
+        return Room(client)
+
+    return made

@@ -7,10 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from nav_msgs.msg import Odometry
 from nav_msgs.srv import GetPlan
-from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import LaserScan
 from std_srvs.srv import Trigger
 
 from dynastar import load_map
@@ -18,7 +15,6 @@ from dynastar.geometry import Pose2D, Twist
 from dynastar.ros.middleware import make
 from dynastar.ros.outgoing import Messages, rotation_of
 from dynastar.ros.replay import replay
-from dynastar.scan import LaserScan as DynastarScan
 
 OFFICE = Path(__file__).parents[3] / "examples" / "office" / "office.yaml"
 OFFICE_SCENARIO = OFFICE.with_suffix(".toml")
@@ -119,41 +115,9 @@ def test_plans_parameters_and_another_map(office):
     assert office.navigator.poll() is None
 
 
-class Clockwork:
-    """A simulator of this test's own making: an empty room, a clock that does what is asked."""
-
-    def __init__(self, client) -> None:
-        self.node, self.out, self.time, self.x = client.node, Messages(make), 10.0, 2.0
-        publish = self.node.create_publisher
-        self.clock = publish(Clock, "/clock", 1)
-        self.scans, self.odometry = publish(LaserScan, "scan", 5), publish(Odometry, "odom", 5)
-        values = np.zeros((100, 100), np.int8)
-        values[[0, -1]] = values[:, [0, -1]] = 100
-        client.maps.publish(self.out.grid(values, (0.05, 0.0, 0.0), "map", 0.0))
-
-    def run(self, client, seconds: float, runs: bool = True, data: bool = True) -> None:
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            if runs:
-                self.time += 0.05
-            v = client.commands[-1][1] if client.commands else 0.0
-            self.x += 0.05 * v
-            self.clock.publish(Clock(clock=self.out.stamp(self.time)))
-            if data:
-                pose, frames = Pose2D(self.x, 2.5, 0.0), ("odom", "base_link")
-                self.odometry.publish(self.out.odometry(pose, Twist(v, 0.0), frames, self.time))
-                ranges = np.full(360, np.inf, np.float32)
-                scan = DynastarScan(self.time, ranges, 0.0, math.tau / 360, 0.12, 3.5)
-                self.scans.publish(self.out.scan(scan, "laser"))
-            client.spin(0.05)
-
-
 @pytest.fixture
-def room(client, processes):
-    words = ["-p", "use_sim_time:=true", "-p", "robot:=turtlebot3_burger"]
-    client.navigator = processes.start("ros", "--ros-args", *words)
-    client.wait_for("idle")
-    made = Clockwork(client)
+def room(client, room_of):
+    made = room_of("-p", "robot:=turtlebot3_burger")
     made.run(client, 1.0)
     client.send(4.5, 2.5)
     made.run(client, 1.0)
