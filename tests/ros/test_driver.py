@@ -159,6 +159,10 @@ def test_requests_are_carried_out_and_told(driver):
     driver.request(cancel=True)
     assert driver.navigator.mission.goals == []
     driver.request(clear=True)
+    driver.request(follow=[[1.0, 2.5], [3.0, 2.5]], heading=0.0)
+    assert feed(driver, 0.05).command.v > 0.0
+    with pytest.raises(InputError, match="finite"):
+        driver.request(follow=[[1.0, math.nan]])
     with pytest.raises(InputError, match="unknown request 'dance'"):
         driver.request(dance=True)
 

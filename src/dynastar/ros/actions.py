@@ -1,4 +1,4 @@
-"""Nav2's actions NavigateToPose and NavigateThroughPoses, where nav2_msgs is installed."""
+"""Nav2's actions NavigateToPose, NavigateThroughPoses and FollowPath, where nav2_msgs is installed."""
 
 import math
 from collections.abc import Callable
@@ -10,10 +10,9 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 
 from dynastar.errors import DynastarError, InputError
-from dynastar.geometry import Goal
 from dynastar.path import Path
 from dynastar.ros.driver import Tick
-from dynastar.ros.incoming import goal_of
+from dynastar.ros.incoming import check_frame, goal_of, pose_of
 from dynastar.ros.outgoing import Messages
 
 FEEDBACK_EVERY = 0.5  # s
@@ -22,19 +21,29 @@ OVER = {"arrived": "succeed", "blocked": "abort", "idle": "abort"}
 ACTIONS = {
     "navigate_to_pose": "nav2_msgs/action/NavigateToPose",
     "navigate_through_poses": "nav2_msgs/action/NavigateThroughPoses",
+    "follow_path": "nav2_msgs/action/FollowPath",
 }
 
 
-def goals_of(request: Any, frame: str) -> list[Goal]:
-    """The goals in an action's goal: one pose, or several as any ROS 2 distribution lists them."""
+def wanted_of(request: Any, frame: str) -> dict[str, Any]:
+    """What an action's goal asks of ``Driver.request``: goals to reach, or a path to follow.
+
+    Raises InputError for another frame, for poses that are not finite, and where there are none.
+    """
+    if hasattr(request, "path"):
+        check_frame("the path", request.path.header.frame_id, frame)
+        poses = [pose_of(stamped.pose) for stamped in request.path.poses]
+        if not poses:
+            raise InputError("there is no pose in the path: expected one or more")
+        return {"follow": [[pose.x, pose.y] for pose in poses], "heading": poses[-1].theta}
     if hasattr(request, "pose"):
-        return [goal_of(request.pose, frame)]
+        return {"goals": [goal_of(request.pose, frame)]}
     poses = request.poses
     for inner in ("goals", "poses"):  # nav_msgs/Goals, nav2_msgs/PoseStampedArray
         poses = getattr(poses, inner, poses)
     if not poses:
         raise InputError("there is no pose in the goal: expected one or more")
-    return [goal_of(pose, frame) for pose in poses]
+    return {"goals": [goal_of(pose, frame) for pose in poses]}
 
 
 def left_of(path: Path, place: tuple[float, float]) -> float:
@@ -62,6 +71,7 @@ class Actions:
         self._began = self._said_at = -math.inf
         self._travelled = 0.0
         self._place: tuple[float, float] | None = None
+        self._path: Path | None = None  # one that was given
         self._servers = [
             ActionServer(
                 node,
@@ -78,8 +88,7 @@ class Actions:
     def _judge(self, request: Any) -> GoalResponse:
         """Sets out for the goals, or refuses with a word in the log."""
         try:
-            goals = goals_of(request, self._frame)
-            self._request(goals=goals)
+            self._request(**wanted_of(request, self._frame))
         except DynastarError as error:
             self._node.get_logger().warning(f"the goal is refused: {error}")
             return GoalResponse.REJECT
@@ -90,6 +99,9 @@ class Actions:
         self._active, self._type = handle, kind
         self._began, self._said_at = math.nan, -math.inf
         self._travelled, self._place = 0.0, None
+        request = handle.request
+        follows = hasattr(request, "path")
+        self._path = Path(wanted_of(request, self._frame)["follow"]) if follows else None
 
     def _on_cancel(self, handle: Any) -> CancelResponse:
         if handle is self._active:
@@ -118,21 +130,30 @@ class Actions:
     def _feedback(self, tick: Tick, now: float) -> Any:
         assert tick.status is not None
         assert tick.pose is not None
-        found, status, pose = self._type.Feedback(), tick.status, tick.pose.pose
-        found.current_pose.header = self._messages.header(self._frame, now)
-        found.current_pose.pose = self._messages.pose(pose)
-        left = 0.0 if status.plan is None else left_of(status.plan.path, (pose.x, pose.y))
+        status, pose = tick.status, tick.pose.pose
+        path = status.plan.path if self._path is None and status.plan is not None else self._path
+        left = 0.0 if path is None else left_of(path, (pose.x, pose.y))
         driven = now - self._began
         self._travelled += math.dist(pose[:2], self._place or pose[:2])
         self._place = pose[:2]
-        speed = max(self._travelled / driven if driven > 0.0 else 0.0, SLOWEST)
-        found.navigation_time = Duration(seconds=driven).to_msg()
-        found.estimated_time_remaining = Duration(seconds=left / speed).to_msg()
-        found.number_of_recoveries = min(status.recoveries, 2**15 - 1)
-        found.distance_remaining = left
-        if hasattr(found, "number_of_poses_remaining"):
-            found.number_of_poses_remaining = min(status.goals_left, 2**15 - 1)
-        return found
+        mean = max(self._travelled / driven if driven > 0.0 else 0.0, SLOWEST)
+        here = self._messages.make(
+            "geometry_msgs/msg/PoseStamped",
+            header=self._messages.header(self._frame, now),
+            pose=self._messages.pose(pose),
+        )
+        known = {
+            "current_pose": here,
+            "navigation_time": Duration(seconds=driven).to_msg(),
+            "estimated_time_remaining": Duration(seconds=left / mean).to_msg(),
+            "number_of_recoveries": min(status.recoveries, 2**15 - 1),
+            "number_of_poses_remaining": min(status.goals_left, 2**15 - 1),
+            "distance_remaining": left,
+            "distance_to_goal": left,
+            "speed": float(tick.pose.twist.v),
+        }
+        fields = self._type.Feedback.get_fields_and_field_types()
+        return self._type.Feedback(**{key: known[key] for key in fields if key in known})
 
     def _finish(self, how: str, words: str) -> None:
         handle, self._active = self._active, None

@@ -2,8 +2,10 @@
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from dynastar.config import checked
 from dynastar.errors import DynastarError, InputError
@@ -164,14 +166,26 @@ class Driver:
             self.navigator.planning_map.grid.world_to_cell(goal.x, goal.y)
         self.navigator.set_goal(goals)
 
+    def follow(self, points: Sequence[Sequence[float]], heading: float | None = None) -> None:
+        """Drives along a path (n, 2), metres, in place of the present goals; InputError leaves those."""
+        if self.navigator is None:
+            raise InputError("there is no map yet")
+        self.navigator.follow(np.array(points, dtype=np.float64).reshape(-1, 2), heading)
+
     def request(self, **wanted: Any) -> str:
-        """Carries out ``goals``, ``cancel``, ``clear``, ``settings``, ``restart`` or ``fault``, as JSON.
+        """Carries out what is wanted by name, and returns it as JSON.
+
+        ``goals``, ``follow`` with ``heading``, ``cancel``, ``clear``, ``settings``, ``restart``, ``fault``.
 
         Raises InputError for what cannot be, and leaves everything as it was.
         """
         for name, value in wanted.items():
             if name == "goals":
                 self.set_goals([Goal(*goal) for goal in value])
+            elif name == "follow":
+                self.follow(value, wanted.get("heading"))
+            elif name == "heading":
+                continue
             elif name == "settings":
                 self._change(value)
             elif name == "restart":

@@ -11,7 +11,7 @@ pytest.importorskip(
 )
 
 from action_msgs.msg import GoalStatus
-from nav2_msgs.action import NavigateThroughPoses, NavigateToPose
+from nav2_msgs.action import FollowPath, NavigateThroughPoses, NavigateToPose
 from rclpy.action import ActionClient
 from tf2_msgs.msg import TFMessage
 
@@ -76,6 +76,19 @@ def test_poses_are_reached_in_order(office):
     counts = [found.number_of_poses_remaining for found in mission.feedback]
     assert counts[0] == 2
     assert counts[-1] == 1
+
+
+def test_a_path_of_another_planner_is_followed(office):
+    points = np.array([(2.0, 2.0), (3.0, 2.0), (4.0, 1.5), (5.0, 2.0)])
+    goal = FollowPath.Goal(path=OUT.path(points, "map", 0.0))
+    mission = Mission(office, FollowPath, "follow_path", goal)
+    assert mission.result(60.0).status == GoalStatus.STATUS_SUCCEEDED
+    assert math.dist(office.place, (5.0, 2.0)) < 0.35
+    assert mission.feedback[0].distance_to_goal > mission.feedback[-1].distance_to_goal
+    empty = make("nav_msgs/msg/Path", header=OUT.header("map", 0.0))
+    for path in (empty, OUT.path(points, "odom", 0.0)):
+        refused = Mission(office, FollowPath, "follow_path", FollowPath.Goal(path=path))
+        assert not refused.handle.accepted
 
 
 def test_goals_are_refused_cancelled_and_replaced(office):
