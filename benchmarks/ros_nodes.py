@@ -123,7 +123,9 @@ def run(seconds: float, wait: float) -> dict[str, float]:
     """One pair of nodes: to and fro for ``seconds``, or with 0 a single mission."""
     watch, nodes = Watch(), Nodes()
     try:
-        assert watch.spin(120.0, lambda: "no goal" in watch.state), "the navigator does not start"
+        started = lambda: "no goal" in watch.state or nodes.navigator.poll() is not None  # noqa: E731
+        assert watch.spin(120.0, started), "the navigator says nothing for two minutes"
+        assert nodes.navigator.poll() is None, "the navigator does not start"
         watch.spin(WARM + wait)
         began, used, wall = time.time(), nodes.cpu_seconds(), time.monotonic()
         legs = arrived = 0

@@ -38,6 +38,7 @@ def build_parser() -> argparse.ArgumentParser:
     _add_run(commands)
     _add_demo(commands)
     _add_info(commands)
+    _add_view(commands)
     _add_schema(commands)
     _add_bench(commands)
     _add_paper(commands)
@@ -138,6 +139,24 @@ def _add_info(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
     info.add_argument("file", metavar="FILE", type=path, help="a map, .toml or .npz")
     info.add_argument("--json", action="store_true", help="JSON on stdout instead of a table")
     info.add_argument("--out", type=path, metavar="PNG", help="draw it into this picture")
+
+
+def _add_view(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
+    view = commands.add_parser(
+        "view",
+        help="replay an episode in the browser",
+        description="Writes one HTML file that replays an episode, or two side by side on one clock: map, "
+        "paths, candidates with their scores, terms of Eq. 9 and tracked obstacles over time. It needs no "
+        "network.",
+        epilog=examples.VIEW_EXAMPLES,
+    )
+    view.add_argument(
+        "episodes", nargs="+", metavar="EPISODE", type=path, help="an .npz, or a folder of `run`"
+    )
+    view.add_argument(
+        "--out", type=path, metavar="HTML", help="default report.html beside the first episode"
+    )
+    view.add_argument("--open", action="store_true", help="open it in the browser")
 
 
 def _add_schema(commands: "argparse._SubParsersAction[OneLineParser]") -> None:

@@ -19,7 +19,7 @@ def execute(arguments: argparse.Namespace) -> int:
         return _copy(arguments.copy)
     choose(arguments.name, scenarios(), "example")
     arguments.scenario = scenarios()[arguments.name]
-    arguments.seed = arguments.preset = None
+    arguments.seed = arguments.preset = arguments.bag = None
     arguments.set = []
     return run.execute(arguments)
 

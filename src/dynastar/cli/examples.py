@@ -16,7 +16,7 @@ examples:
   dynastar run office.toml --set dwa.horizon=2 --set reverse=false
   dynastar run office.toml --bag out/office-bag     # opens in Foxglove and RViz, see dynastar replay
 
-Writes figure.png, animation.gif, summary.json, episode.npz and config.json into DIR."""
+Writes report.html, figure.png, animation.gif, summary.json, episode.npz and config.json into DIR."""
 
 BENCH_EXAMPLES = """\
 examples:
@@ -72,6 +72,15 @@ examples:
   dynastar info office.yaml
   dynastar info examples/office/office.toml --out office.png
   dynastar info out/office/episode.npz --json"""
+
+VIEW_EXAMPLES = """\
+examples:
+  dynastar view out/office --open
+  dynastar view out/default out/paper --out both.html
+  dynastar view failures/barn-17.npz
+
+Episodes of `dynastar run` have all that the page can show; those that were written without it lack
+candidates, terms and tracks."""
 
 SCHEMA_EXAMPLES = """\
 examples:

@@ -17,6 +17,7 @@ from dynastar.errors import MissingPackage
 from dynastar.extras import require
 from dynastar.io.files import write_json
 from dynastar.simulation import Scenario
+from dynastar.web import write_report
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -34,7 +35,7 @@ def execute(arguments: argparse.Namespace) -> int:
     folder = make_folder("--out", arguments.out or Path("out", safe_name(scenario)))
     prepare()
     if arguments.bag is None:
-        episode = io.run(scenario, progress=True)
+        episode = io.run(scenario, progress=True, trace=True)
     else:
         from dynastar.ros.recording import run_recorded
 
@@ -54,10 +55,11 @@ def safe_name(scenario: Scenario) -> str:
 
 
 def write_folder(folder: Path, episode: Episode, summary: dict[str, Any], gif: bool) -> None:
-    """Writes figure.png, summary.json, config.json, episode.npz and, if asked, animation.gif."""
+    """Writes the summary, the configuration, the episode, its report and its pictures."""
     write_json(folder / "summary.json", summary)
     write_json(folder / "config.json", {"scenario": episode.scenario, "config": episode.config})
     io.save_episode(episode, folder / "episode.npz")
+    write_report([episode], folder / "report.html")
     try:
         from dynastar.viewer.figure import draw_episode
     except MissingPackage as missing:

@@ -131,6 +131,7 @@ class DynamicWindow:
             np.zeros(n, np.int64),
             np.empty(n),
         )
+        self._bounded = True
         alpha, beta, gamma, sigma, rho = map(float, config.weights)
         weights = alpha, beta, gamma, sigma, rho
         by_bearing = config.progress == "bearing"
@@ -147,17 +148,31 @@ class DynamicWindow:
         """The best admissible command from ``pose`` and ``twist``."""
         config, limits = self.config, self.robot.limits
         window = dynamic_window(*twist, limits, min(scene.v_cap, limits.v_max), self._reach)
-        samples, commands, holds, tails, terms, refused, score = self._buffers
-        speeds, rates = self._speeds, self._rates
+        samples, speeds, rates = self._buffers[0], self._speeds, self._rates
         most = config.v_samples, config.omega_samples
-        state = ((pose.x, pose.y, math.cos(pose.theta), math.sin(pose.theta)), *twist)
         if config.search == "arcs":
             steps = config.arcs.v_step, config.arcs.omega_step
             n = sample_multiples(window, speeds, rates, steps, most, samples)
-            best = search_arcs(scene, self._rules, self._arcs, state, n, self._buffers)
         else:
             n = sample_window(window, speeds, rates, *most, samples)
-            best = search(scene, self._rules, state, n, self._buffers)
+        return self._search(pose, twist, scene, n)
+
+    def survey(self, pose: Pose2D, twist: Twist, scene: Scene) -> Choice:
+        """As ``choose``, with the scores of all admissible samples, also of those that cannot win."""
+        self._bounded = False
+        try:
+            return self.choose(pose, twist, scene)
+        finally:
+            self._bounded = True
+
+    def _search(self, pose: Pose2D, twist: Twist, scene: Scene, n: int) -> Choice:
+        """The best of the ``n`` samples in the buffers."""
+        samples, commands, holds, tails, terms, refused, score = self._buffers
+        state = ((pose.x, pose.y, math.cos(pose.theta), math.sin(pose.theta)), *twist)
+        if self.config.search == "arcs":
+            best = search_arcs(scene, self._rules, self._arcs, state, n, self._buffers)
+        else:
+            best = search(scene, self._rules, state, n, self._buffers, self._bounded)
             n += 2
         refused = refused[:n].copy()
         counts = np.bincount(refused, minlength=max(REFUSALS) + 1)

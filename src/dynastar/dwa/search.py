@@ -47,7 +47,7 @@ def refusal(scene, rules, state, command):
 
 
 @njit(cache=True)
-def search(scene, rules, state, n, buffers):
+def search(scene, rules, state, n, buffers, bounded):
     """Scores the admissible of ``n`` samples by Eq. 9 and returns the best, or -1.
 
     Where a command does not rest in time before moving obstacles, a manoeuvre that begins with it is
@@ -56,7 +56,8 @@ def search(scene, rules, state, n, buffers):
     Two more candidates are written behind them: what the manoeuvre chosen last would do now (n),
     looked at first, and following the cost-to-go at once (n + 1). Every change from the former has
     to be worth something. ``buffers`` are samples, commands (n + 2, 2), holds in seconds and tails
-    (n + 2,), terms (n + 2, 5), refusals and scores (n + 2,).
+    (n + 2,), terms (n + 2, 5), refusals and scores (n + 2,). Where it is not ``bounded``, candidates
+    that cannot be the best are rolled out to their end, too.
     """
     limits, span, period = rules.limits, rules.span, rules.period
     samples, commands, holds, tails, terms, refused, score = buffers
@@ -105,7 +106,8 @@ def search(scene, rules, state, n, buffers):
             elif not worth_holding(sample, limits, tail, long, people):
                 continue
             manoeuvre = (sample[0], sample[1], held, tail, has_to_pass)
-            gauge = (begin, scale, max(best_score, score[i]) + change)
+            enough = max(best_score, score[i]) + change if bounded else -np.inf
+            gauge = (begin, scale, enough)
             outcome = future(scene, rules, state, manoeuvre, gauge, found, worst)
             if outcome != TOUCHED:
                 refused[i] = ADMISSIBLE

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.config import shown
-from dynastar.episode import Episode, EventRecord, PlanRecord
+from dynastar.episode import Episode, EventRecord, PlanRecord, Trace
 from dynastar.errors import EpisodeError, MapError
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.io.files import read_bytes, written_aside
@@ -48,10 +48,22 @@ _SHAPES: dict[str, tuple[Any, ...]] = {
     "explored": (-1, 2),
     "explored_rows": (-1,),
 }
-_TEXTS = ("states", "limits")
-_OPTIONAL = ("limits",)  # was not recorded before
+# Of a Trace, that an episode may have.
+_TRACE: dict[str, tuple[Any, ...]] = {
+    "candidates": ("k", 3),
+    "refused": ("k",),
+    "candidate_rows": ("t",),
+    "terms": ("t", 5),
+    "chosen": ("t", 3),
+    "tracks": ("j", 5),
+    "track_rows": ("t",),
+    "reasons": ("t",),
+    "seen": (-1, 3),
+}
+_TEXTS = ("states", "limits", "reasons")
+_OPTIONAL = ("limits", *_TRACE)  # was not recorded before
 _MASKS = ("keepout", "speed_limit")
-_KNOWN = {*_SHAPES, *_MASKS}
+_KNOWN = {*_SHAPES, *_MASKS, *_TRACE}
 
 
 def save_episode(episode: Episode, path: str | Path) -> None:
@@ -72,6 +84,7 @@ def save_episode(episode: Episode, path: str | Path) -> None:
         "explored_frame": list(episode.explored_frame),
         "config": episode.config,
         "scenario": episode.scenario,
+        "seen_columns": 0 if episode.trace is None else episode.trace.seen_columns,
     }
     try:
         # NaN and infinity stay what they are: this JSON is read by load_episode alone.
@@ -122,6 +135,8 @@ def _arrays(episode: Episode) -> Arrays:
     }
     if len(episode.limits):
         arrays["limits"] = np.asarray(episode.limits, dtype=np.str_)
+    if episode.trace is not None:
+        arrays |= {name: getattr(episode.trace, name) for name in _TRACE}
     for mask in _MASKS:
         if getattr(episode.grid, mask) is not None:
             arrays[mask] = getattr(episode.grid, mask)
@@ -158,7 +173,7 @@ def _header(packed: npt.NDArray[Any]) -> dict[str, Any]:
 def _check(arrays: Arrays) -> None:
     """Raises EpisodeError unless every array has its shape, and KeyError if one is missing."""
     sizes: dict[str, int] = {}
-    for name, shape in _SHAPES.items():
+    for name, shape in (_SHAPES | _TRACE).items():
         if name in _OPTIONAL and name not in arrays:
             continue
         found = arrays[name].shape
@@ -170,7 +185,7 @@ def _check(arrays: Arrays) -> None:
         if not fits:
             raise EpisodeError(f"'{name}' has shape {found}: expected {shape} with {sizes}")
         text = arrays[name].dtype.kind == "U"
-        if text != (name in _TEXTS) or arrays[name].dtype.kind not in "Uifb":
+        if text != (name in _TEXTS) or arrays[name].dtype.kind not in "Uuifb":
             raise EpisodeError(f"'{name}' is of {arrays[name].dtype}: expected numbers or names")
 
 
@@ -210,7 +225,18 @@ def _episode(header: dict[str, Any], arrays: Arrays) -> Episode:
         limits=arrays.get("limits", np.empty(0, np.str_)),
         config=dict(header["config"]),
         scenario=dict(header["scenario"]),
+        trace=_trace(header, arrays),
     )
+
+
+def _trace(header: dict[str, Any], arrays: Arrays) -> Trace | None:
+    """The Trace of an episode that has one."""
+    if "candidates" not in arrays:
+        return None
+    for rows, parts in (("candidate_rows", "candidates"), ("track_rows", "tracks")):
+        _split(arrays, parts, rows)  # that they add up
+    columns = int(header.get("seen_columns", 0))
+    return Trace(**{name: arrays[name] for name in _TRACE}, seen_columns=columns)
 
 
 def _split(arrays: Arrays, points: str, rows: str) -> tuple[npt.NDArray[Any], ...]:

@@ -157,11 +157,12 @@ def run(
     progress: bool = False,
     seed: int | None = None,
     navigator: Callable[..., simulation.Controller] | None = None,
+    trace: bool = False,
 ) -> Episode:
     """Drives a scenario, or the one in a file, in simulation: see ``simulation.run``."""
     if not isinstance(scenario, Scenario):
         scenario = load_scenario(scenario)
-    return simulation.run(scenario, progress=progress, seed=seed, navigator=navigator)
+    return simulation.run(scenario, progress, seed, navigator=navigator, trace=trace)
 
 
 def _table(value: Any, where: str) -> dict[str, Any]:

@@ -87,6 +87,7 @@ class Navigator:
         self._planner = planner
         self._last = AT_REST
         self._choice: Choice | None = None
+        self._asked: tuple[Pose2D, Twist, Scene] | None = None
         self._commands = Commands(robot.limits, config.period, config.latency)
         self.planning_map = self._planning_map_of(grid)
         self.route = Route(self.planning_map, self.mission, config)
@@ -113,6 +114,13 @@ class Navigator:
             mission.error,
             choice,
         )
+
+    def survey(self) -> Choice | None:
+        """The last command's candidates with the scores of all; None where none were searched.
+
+        For pictures: it takes longer than ``command``, and changes nothing. Call it before the next.
+        """
+        return None if self._asked is None else self.window.survey(*self._asked)
 
     def set_map(self, grid: OccupancyGrid) -> None:
         """Another map; what was seen is kept round the robot, the next tick plans anew."""
@@ -169,7 +177,7 @@ class Navigator:
         movers: Sequence[MovingObstacle] | None = None,
     ) -> Twist:
         """The twist to drive from now on; ``movers`` replaces what the tracker finds in the scans."""
-        self._choice = None
+        self._choice, self._asked = None, None
         state, mission = self._within_limits(state), self.mission
         fault = self._perceive(state, scan)
         if fault is not None:
@@ -217,6 +225,7 @@ class Navigator:
             self._last = AT_REST
             command = self._turned(pose, twist, goal.heading)
             return command if self.window.admits(pose, twist, scene, command) else None
+        self._asked = pose, twist, scene
         choice = self._choice = self.window.choose(pose, twist, scene)
         self._last = choice.left
         self._judge(state, choice, len(scene.people.now) > 0)

@@ -94,7 +94,8 @@ class NavigatorNode(Node):  # type: ignore[misc]
             return None
         from dynastar.ros.actions import ACTIONS, Actions
 
-        kinds = {name: getattr(types, kind.split("/")[-1]) for name, kind in ACTIONS.items()}
+        found = {name: getattr(types, kind.split("/")[-1], None) for name, kind in ACTIONS.items()}
+        kinds = {name: kind for name, kind in found.items() if kind is not None}
         frame = self.parameters.settings.global_frame
         return Actions(self, kinds, frame, self._out, self._request)
 

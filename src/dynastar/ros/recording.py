@@ -44,7 +44,7 @@ def run_recorded(
         def driven(grid: OccupancyGrid, robot: Robot, config: NavigatorConfig) -> MessageNavigator:
             return MessageNavigator(bag, grid, robot, config)
 
-        return drive(scenario, progress, seed, navigator=driven)
+        return drive(scenario, progress, seed, navigator=driven, trace=True)
 
 
 class MessageNavigator:
@@ -70,10 +70,11 @@ class MessageNavigator:
     @property
     def status(self) -> Status:
         """The navigator's."""
-        return self._navigator.status
+        return self.navigator.status
 
     @property
-    def _navigator(self) -> Navigator:
+    def navigator(self) -> Navigator:
+        """The driver's."""
         assert self._driver.navigator is not None
         return self._driver.navigator
 
@@ -116,6 +117,6 @@ class MessageNavigator:
         tick = self._driver.tick(self._now)
         self._write("cmd_vel", out.twist(tick.command))
         if tick.status is not None:
-            self._shown.show(self._navigator, tick.status, tick.pose, self._now)
+            self._shown.show(self.navigator, tick.status, tick.pose, self._now)
         self._shown.say(tick.state, tick.reason, {}, self._now, self._now)
         return tick.command

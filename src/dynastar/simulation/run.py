@@ -18,6 +18,7 @@ from dynastar.robot import stopping_time
 from dynastar.simulation.faults import FaultInjector
 from dynastar.simulation.record import Recorder
 from dynastar.simulation.scenario import Scenario
+from dynastar.simulation.tracing import Tracer
 from dynastar.simulation.warm_up import warm_up
 from dynastar.simulation.world import World
 
@@ -50,11 +51,12 @@ def run(
     seed: int | None = None,
     *,
     navigator: Callable[..., Controller] | None = None,
+    trace: bool = False,
 ) -> Episode:
     """``drive`` with warm kernels, so that ``command_ms`` tells what commands cost."""
     if navigator is None:
         warm_up()
-    return drive(scenario, progress, seed, navigator=navigator)
+    return drive(scenario, progress, seed, navigator=navigator, trace=trace)
 
 
 def drive(
@@ -63,12 +65,14 @@ def drive(
     seed: int | None = None,
     *,
     navigator: Callable[..., Controller] | None = None,
+    trace: bool = False,
 ) -> Episode:
     """Runs a mission from its start to its end and returns the record of it.
 
     ``progress`` shows a bar on stderr, in simulated seconds. ``seed`` replaces the scenario's.
     ``navigator`` is called as ``navigator(grid, robot, config)`` for what drives, by default
-    ``dynastar.Navigator``. But for ``command_ms``, a seed gives the same Episode every time.
+    ``dynastar.Navigator``. ``trace`` keeps what it thought at each tick.
+    But for ``command_ms``, a seed gives the same Episode every time.
 
     Raises ConfigError and ScenarioError for settings and scenarios that cannot be, and
     StartOccupied, GoalOccupied or OutOfMap for a start or goal that the navigator cannot take.
@@ -86,6 +90,7 @@ def drive(
     controller.set_goal(scenario.goals)
     recorder, referee = Recorder(scenario, world), Referee(scenario, config)
     faults = FaultInjector(scenario.faults, world, controller, recorder.event, seed)
+    tracer = Tracer(controller) if trace else None
     ending, ticks = None, 0
     with tqdm(
         total=scenario.time_limit,
@@ -107,6 +112,8 @@ def drive(
             if world.time == 0.0 and status.error is not None:
                 status = _explained(status, scenario)
             recorder.tick(command, command_ms, status)
+            if tracer is not None:
+                tracer.tick(status)
             ending = referee.ended(world, status)
             if ending is None:
                 ticks += 1
@@ -117,7 +124,8 @@ def drive(
     outcome, reason = ending
     if outcome == "contact":
         recorder.contact(command, reason)
-    return recorder.episode(outcome, reason, config, seed)
+    episode = recorder.episode(outcome, reason, config, seed)
+    return episode if tracer is None else replace(episode, trace=tracer.trace())
 
 
 def _explained(status: Any, scenario: Scenario) -> Any:

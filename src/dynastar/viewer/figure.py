@@ -103,11 +103,14 @@ def draw_world(
     save(figure, path, dpi)
 
 
-def draw_episode(episode: Episode, path: str | Path, width: float = 9.0, dpi: int = 160) -> None:
+def draw_episode(
+    episode: Episode, path: str | Path | None = None, width: float = 9.0, dpi: int = 160
+) -> Figure:
     """Draws a mission: map, explored cells, global paths, obstacles, movers, and what was driven.
 
-    ``width`` is in inches; the suffix of ``path`` (.png, .svg, .pdf) says the format. A mission
-    that takes but a small part of its map is shown close up. Raises InputError for another suffix.
+    ``width`` is in inches; the suffix of ``path`` (.png, .svg, .pdf), if there is one, says the format.
+    A mission that takes but a small part of its map is shown close up. Raises InputError for another
+    suffix.
     """
     metrics = measure(episode)
     plans = [plan.points for plan in episode.plans]
@@ -128,7 +131,9 @@ def draw_episode(episode: Episode, path: str | Path, width: float = 9.0, dpi: in
     entries += layers.show_contact(axes, episode)
     words = (f"{scene.name_of(episode)}: {scene.outcome_words(metrics)}", _detail(metrics))
     _lay_out(figure, axes, view, width, words, entries, driven)
-    save(figure, path, dpi)
+    if path is not None:
+        save(figure, path, dpi)
+    return figure
 
 
 def _detail(metrics: Metrics) -> str:
