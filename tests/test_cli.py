@@ -178,7 +178,14 @@ def test_run_writes_its_folder(capsys: pytest.CaptureFixture[str], folder: Path)
     assert summary["outcome"] == "arrived"
     assert finite((out / "summary.json").read_text()) == summary
     assert {path.name for path in out.iterdir()} == {
-        *("figure.png", "animation.gif", "summary.json", "episode.npz", "config.json")
+        *(
+            "figure.png",
+            "report.html",
+            "animation.gif",
+            "summary.json",
+            "episode.npz",
+            "config.json",
+        )
     }
 
 
