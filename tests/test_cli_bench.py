@@ -16,7 +16,7 @@ from test_cli import SCENARIO, finite, folder, refused, run
 
 __all__ = ["folder"]  # a fixture
 
-FILES = {"figure.png", "animation.gif", "summary.json", "episode.npz", "config.json"}
+FILES = {"figure.png", "animation.gif", "summary.json", "episode.npz", "config.json", "report.html"}
 
 
 def small_result(outcomes: list[str]) -> str:

@@ -54,7 +54,8 @@ def run_mission(
     is the sum of the scenario's, the options' and the repeat.
     """
     scenario = asked(scenario, options, repeat)
-    episode = run(scenario, navigator=controller_named(options.controller))
+    trace = getattr(options.observe, "traces", False)
+    episode = run(scenario, navigator=controller_named(options.controller), trace=trace)
     row = row_of_episode(episode, scenario, score=score, group=group)
     if extra is not None:
         row |= dict(extra(episode))
