@@ -1,6 +1,7 @@
 """Recordings: read by others, replayed to the last digit, and refused where they are none."""
 
 import collections
+import importlib.util
 import math
 import shutil
 from dataclasses import replace
@@ -159,7 +160,8 @@ def test_the_commands(tmp_path, capsys, monkeypatch):
     table = capsys.readouterr().out
     assert "dwa.horizon=2" in table
     folder = tmp_path / "out" / "replay-bag"
-    assert (folder / "figure.png").stat().st_size > 5000
+    if importlib.util.find_spec("matplotlib"):
+        assert (folder / "figure.png").stat().st_size > 5000
     rows = (folder / "commands.csv").read_text().splitlines()
     assert rows[0].startswith("time [s],recorded v [m/s],recorded omega [rad/s],as recorded v")
     assert main(["replay", "bag", "--topic", "scan"]) == 2
