@@ -31,15 +31,15 @@ class EventRecord(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """What the navigator thought at each of n ticks.
+    """What the navigator considered and chose at each of n ticks.
 
     ``candidates`` (k, 3) are v (m/s), omega (rad/s) and score of the window's samples, ``refused`` (k,)
     codes of ``dwa.REFUSALS`` (0 admissible), ``candidate_rows`` (n,) how many belong to each tick.
     ``terms`` (n, 5) are those of Eq. 9 of the chosen sample and ``chosen`` (n, 3) its v, omega and the
     seconds it is held, NaN where none was chosen. ``tracks`` (j, 5) are x, y, vx, vy and radius of tracked
     obstacles, ``track_rows`` (n,) how many each tick has. ``reasons`` (n,) says why in words. ``seen``
-    (m, 3) are tick, cell and whether the planning map then took that cell for blocked by what was
-    sensed; cells count row by row in the episode's ``explored_frame`` with ``seen_columns`` a row.
+    (m, 4) are tick, row, column and whether the planning map took that cell for blocked from then on, by
+    what was sensed; ``seen_frame`` is (resolution, x, y, yaw) of these cells.
     """
 
     candidates: npt.NDArray[np.float32]
@@ -51,7 +51,7 @@ class Trace:
     track_rows: npt.NDArray[np.int64]
     reasons: npt.NDArray[np.str_]
     seen: npt.NDArray[np.int32]
-    seen_columns: int
+    seen_frame: tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +65,7 @@ class Episode:
     ``states`` (n,) the navigator's state by name, ``limits`` (n,) what limited the speed as far as the
     navigator says so, else "", and empty where that was not recorded. ``obstacles`` lists the polygons
     (k, 2) that the map did not have. ``explored_frame`` is (resolution, x, y, yaw) of the plans'
-    explored cells. ``trace`` has what the navigator thought, if that was recorded.
+    explored cells. ``trace`` has what the navigator considered, if that was recorded.
     """
 
     grid: OccupancyGrid
@@ -95,6 +95,6 @@ class Episode:
 
     def _repr_html_(self) -> str:
         """The replay as a notebook shows it: the page of ``dynastar view`` in a frame."""
-        from dynastar.web import framed
+        from dynastar.page import framed
 
         return framed(self)

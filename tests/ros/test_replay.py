@@ -18,7 +18,7 @@ from dynastar.robot import ROBOTS
 from dynastar.ros.bag import BagReader, BagWriter, make
 from dynastar.ros.outgoing import Messages
 from dynastar.ros.recording import run_recorded
-from dynastar.ros.replay import Instead, replay
+from dynastar.ros.replay import Overrides, replay
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 OUT = Messages(make)
@@ -68,8 +68,8 @@ def test_a_replay_gives_the_recorded_commands_each_time(office):
 
 
 def test_other_settings_give_other_commands(office):
-    other = replay(office[0], Instead(settings={"dwa": {"horizon": 1.5}}))
-    paper = replay(office[0], Instead(preset="paper"))
+    other = replay(office[0], Overrides(settings={"dwa": {"horizon": 1.5}}))
+    paper = replay(office[0], Overrides(preset="paper"))
     for found in (other, paper):
         assert len(found.commands) == len(office[1].commands)
         assert not np.array_equal(found.commands, found.recorded)
@@ -119,7 +119,7 @@ def test_recordings_of_others_are_ticked_at_each_scan(tmp_path):
     foreign(tmp_path / "bag")
     with pytest.raises(DataError, match="name its robot with --robot"):
         replay(tmp_path / "bag")
-    found = replay(tmp_path / "bag", Instead(ROBOTS["turtlebot3_burger"]))
+    found = replay(tmp_path / "bag", Overrides(ROBOTS["turtlebot3_burger"]))
     assert found.times == pytest.approx(0.1 * np.arange(20))
     assert found.states[:6] == ("idle",) * 6
     assert found.commands[-1, 0] > 0.0
@@ -136,13 +136,39 @@ def test_recordings_that_are_none(tmp_path, capsys):
     (tmp_path / "words.mcap").write_text("no recording")
     for name in ("nowhere", "cut", "empty", "words.mcap"):
         with pytest.raises(DataError, match=name):
-            replay(tmp_path / name, Instead(ROBOTS["jackal"]))
+            replay(tmp_path / name, Overrides(ROBOTS["jackal"]))
     with pytest.raises(DataError, match="no topic 'scan' of type sensor_msgs"):
-        replay(tmp_path / "bag", Instead(ROBOTS["jackal"]), {"scan": "rear/scan"})
+        replay(tmp_path / "bag", Overrides(ROBOTS["jackal"]), {"scan": "rear/scan"})
     with pytest.raises(DataError, match="a new folder"):
         BagWriter(tmp_path / "bag")
     assert main(["replay", str(tmp_path / "nowhere")]) == 2
     assert capsys.readouterr().err.count("\n") == 1
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # rosbags' files
+def test_damaged_recordings_end_in_one_sentence(tmp_path):
+    foreign(tmp_path / "bag")
+    whole = (tmp_path / "bag" / "bag.mcap").read_bytes()
+    rng, said = np.random.default_rng(0), []
+    for trial in range(120):
+        data = bytearray(whole)
+        if trial % 3 == 0:
+            del data[rng.integers(1, len(data)) :]
+        else:
+            ends = (0, 2000) if trial % 3 == 1 else (len(data) - 3000, len(data))
+            data[rng.integers(*ends)] = rng.integers(256)
+        (tmp_path / "m.mcap").write_bytes(data)
+        reader = None
+        try:
+            reader = BagReader(tmp_path / "m.mcap")
+            sum(1 for _ in reader.messages(set(reader.topics)))
+        except DataError as error:
+            said.append(str(error))
+        finally:
+            if reader is not None:
+                reader.close()
+    assert len(said) > 30
+    assert all("m.mcap" in words for words in said)
 
 
 def test_a_recording_that_fails_leaves_nothing(tmp_path):

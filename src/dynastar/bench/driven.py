@@ -54,8 +54,8 @@ def run_mission(
     is the sum of the scenario's, the options' and the repeat.
     """
     scenario = asked(scenario, options, repeat)
-    trace = getattr(options.observe, "traces", False)
-    episode = run(scenario, navigator=controller_named(options.controller), trace=trace)
+    controller = controller_named(options.controller)
+    episode = run(scenario, navigator=controller, trace=options.observe is not None)
     row = row_of_episode(episode, scenario, score=score, group=group)
     if extra is not None:
         row |= dict(extra(episode))

@@ -36,10 +36,9 @@ class FailureKeeper:
 
 @dataclass(frozen=True)
 class EpisodeKeeper:
-    """Writes the episode of a mission, with its trace, into ``file``."""
+    """Writes the episode of a mission into ``file``."""
 
     file: Path
-    traces = True
 
     def __call__(
         self, suite: str, mission: Mission, repeat: int, episode: Episode, row: dict[str, Any]

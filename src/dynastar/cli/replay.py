@@ -18,16 +18,16 @@ from dynastar.errors import InputError, MissingPackage
 from dynastar.extras import require
 from dynastar.io.files import write_json, written_aside
 from dynastar.robot import ROBOTS
-from dynastar.ros.driver import TAKES
-from dynastar.ros.replay import Instead, Replay, replay
+from dynastar.ros.bridge import TAKES
+from dynastar.ros.replay import Overrides, Replay, replay
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Replays the recording, once more with other settings if there are any, and compares."""
     require("bags", "recordings need")
     robot = None if arguments.robot is None else choose(arguments.robot, ROBOTS, "robot")
-    as_it_is = Instead(robot, pose_source=arguments.pose)
-    runs = {"as recorded" if robot is None else "default": as_it_is}
+    as_it_is = Overrides(robot, pose_source=arguments.pose)
+    runs = {"as recorded" if robot is None else robot.name: as_it_is}
     settings = parsed(arguments.set)
     if arguments.preset is not None or settings:
         words = [arguments.preset, *arguments.set]
@@ -37,7 +37,7 @@ def execute(arguments: argparse.Namespace) -> int:
     bag = Path(arguments.bag)
     folder = make_folder("--out", arguments.out or Path("out", f"replay-{bag.stem or 'bag'}"))
     prepare()
-    found = {name: replay(bag, instead, remap, progress=True) for name, instead in runs.items()}
+    found = {name: replay(bag, overrides, remap, progress=True) for name, overrides in runs.items()}
     summaries = {name: one.summary() for name, one in found.items()}
     write_folder(folder, found, summaries)
     print(f"what came of it is in {folder}", file=sys.stderr)

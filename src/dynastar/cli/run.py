@@ -16,8 +16,8 @@ from dynastar.episode import Episode
 from dynastar.errors import MissingPackage
 from dynastar.extras import require
 from dynastar.io.files import write_json
+from dynastar.page import write_report
 from dynastar.simulation import Scenario
-from dynastar.web import write_report
 
 
 def execute(arguments: argparse.Namespace) -> int:

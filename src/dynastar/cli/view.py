@@ -8,8 +8,8 @@ from pathlib import Path
 from dynastar import io
 from dynastar.cli.outputs import check_file
 from dynastar.errors import EpisodeError, InputError
-from dynastar.web import write_report
-from dynastar.web.report import MOST
+from dynastar.page import write_report
+from dynastar.page.report import MOST
 
 EPISODE = "episode.npz"
 

@@ -58,7 +58,7 @@ _TRACE: dict[str, tuple[Any, ...]] = {
     "tracks": ("j", 5),
     "track_rows": ("t",),
     "reasons": ("t",),
-    "seen": (-1, 3),
+    "seen": (-1, 4),
 }
 _TEXTS = ("states", "limits", "reasons")
 _OPTIONAL = ("limits", *_TRACE)  # was not recorded before
@@ -84,7 +84,7 @@ def save_episode(episode: Episode, path: str | Path) -> None:
         "explored_frame": list(episode.explored_frame),
         "config": episode.config,
         "scenario": episode.scenario,
-        "seen_columns": 0 if episode.trace is None else episode.trace.seen_columns,
+        "seen_frame": None if episode.trace is None else list(episode.trace.seen_frame),
     }
     try:
         # NaN and infinity stay what they are: this JSON is read by load_episode alone.
@@ -235,8 +235,9 @@ def _trace(header: dict[str, Any], arrays: Arrays) -> Trace | None:
         return None
     for rows, parts in (("candidate_rows", "candidates"), ("track_rows", "tracks")):
         _split(arrays, parts, rows)  # that they add up
-    columns = int(header.get("seen_columns", 0))
-    return Trace(**{name: arrays[name] for name in _TRACE}, seen_columns=columns)
+    resolution, x, y, yaw = map(float, header["seen_frame"])
+    named = {name: arrays[name] for name in _TRACE}
+    return Trace(**named, seen_frame=(resolution, x, y, yaw))
 
 
 def _split(arrays: Arrays, points: str, rows: str) -> tuple[npt.NDArray[Any], ...]:

@@ -11,7 +11,7 @@ from rclpy.node import Node
 
 from dynastar.errors import DynastarError, InputError
 from dynastar.path import Path
-from dynastar.ros.driver import Tick
+from dynastar.ros.bridge import Tick
 from dynastar.ros.incoming import check_frame, goal_of, pose_of
 from dynastar.ros.outgoing import Messages
 
@@ -25,8 +25,8 @@ ACTIONS = {
 }
 
 
-def wanted_of(request: Any, frame: str) -> dict[str, Any]:
-    """What an action's goal asks of ``Driver.request``: goals to reach, or a path to follow.
+def requested(request: Any, frame: str) -> dict[str, Any]:
+    """What an action's goal asks of ``Bridge.request``: goals to reach, or a path to follow.
 
     Raises InputError for another frame, for poses that are not finite, and where there are none.
     """
@@ -35,7 +35,7 @@ def wanted_of(request: Any, frame: str) -> dict[str, Any]:
         poses = [pose_of(stamped.pose) for stamped in request.path.poses]
         if not poses:
             raise InputError("there is no pose in the path: expected one or more")
-        return {"follow": [[pose.x, pose.y] for pose in poses], "heading": poses[-1].theta}
+        return {"follow": ([[pose.x, pose.y] for pose in poses], poses[-1].theta)}
     if hasattr(request, "pose"):
         return {"goals": [goal_of(request.pose, frame)]}
     poses = request.poses
@@ -46,7 +46,7 @@ def wanted_of(request: Any, frame: str) -> dict[str, Any]:
     return {"goals": [goal_of(pose, frame) for pose in poses]}
 
 
-def left_of(path: Path, place: tuple[float, float]) -> float:
+def remaining_length(path: Path, place: tuple[float, float]) -> float:
     """Metres of a path from the nearest of its points to its end, and from ``place`` to that point."""
     apart = np.hypot(*(path.points - place).T)
     nearest = int(np.argmin(apart))
@@ -65,7 +65,7 @@ class Actions:
         request: Callable[..., None],
     ) -> None:
         self._node, self._frame, self._messages = node, frame, messages
-        self._request = request  # as Driver.request, which raises a DynastarError
+        self._request = request  # as Bridge.request, which raises a DynastarError
         self._active: Any = None
         self._type: Any = None
         self._began = self._said_at = -math.inf
@@ -88,7 +88,7 @@ class Actions:
     def _judge(self, request: Any) -> GoalResponse:
         """Sets out for the goals, or refuses with a word in the log."""
         try:
-            self._request(**wanted_of(request, self._frame))
+            self._request(**requested(request, self._frame))
         except DynastarError as error:
             self._node.get_logger().warning(f"the goal is refused: {error}")
             return GoalResponse.REJECT
@@ -101,7 +101,7 @@ class Actions:
         self._travelled, self._place = 0.0, None
         request = handle.request
         follows = hasattr(request, "path")
-        self._path = Path(wanted_of(request, self._frame)["follow"]) if follows else None
+        self._path = Path(requested(request, self._frame)["follow"][0]) if follows else None
 
     def _on_cancel(self, handle: Any) -> CancelResponse:
         if handle is self._active:
@@ -114,7 +114,7 @@ class Actions:
 
     def update(self, tick: Tick, now: float) -> None:
         """Says how the mission goes, and ends it when it is over."""
-        handle, status, state = self._active, tick.status, tick.pose
+        handle, status, state = self._active, tick.status, tick.robot
         if handle is None or status is None or state is None:
             return
         if not math.isfinite(self._began):
@@ -129,10 +129,10 @@ class Actions:
 
     def _feedback(self, tick: Tick, now: float) -> Any:
         assert tick.status is not None
-        assert tick.pose is not None
-        status, pose = tick.status, tick.pose.pose
+        assert tick.robot is not None
+        status, pose = tick.status, tick.robot.pose
         path = status.plan.path if self._path is None and status.plan is not None else self._path
-        left = 0.0 if path is None else left_of(path, (pose.x, pose.y))
+        left = 0.0 if path is None else remaining_length(path, (pose.x, pose.y))
         driven = now - self._began
         self._travelled += math.dist(pose[:2], self._place or pose[:2])
         self._place = pose[:2]
@@ -150,7 +150,7 @@ class Actions:
             "number_of_poses_remaining": min(status.goals_left, 2**15 - 1),
             "distance_remaining": left,
             "distance_to_goal": left,
-            "speed": float(tick.pose.twist.v),
+            "speed": float(tick.robot.twist.v),
         }
         fields = self._type.Feedback.get_fields_and_field_types()
         return self._type.Feedback(**{key: known[key] for key in fields if key in known})

@@ -1,4 +1,4 @@
-"""The navigator as a ROS 2 node: messages to the driver, its commands to cmd_vel."""
+"""The navigator as a ROS 2 node: its subscriptions, publishers, services and parameters."""
 
 import math
 import time
@@ -19,13 +19,13 @@ from dynastar.errors import DynastarError, InputError
 from dynastar.geometry import Twist
 from dynastar.planning import plan
 from dynastar.ros.bag import BagWriter
-from dynastar.ros.driver import REQUESTS, TAKES, Driver, start_request
+from dynastar.ros.bridge import REQUESTS, TAKES, Bridge, start_request
 from dynastar.ros.incoming import goal_of
 from dynastar.ros.middleware import make, message_class
 from dynastar.ros.outgoing import Messages
 from dynastar.ros.parameters import Parameters
+from dynastar.ros.publishing import PUBLISHES, StatusPublisher
 from dynastar.ros.settings import flat, nested
-from dynastar.ros.shown import SHOWS, Shown
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 SENSORS = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -48,27 +48,26 @@ class NavigatorNode(Node):  # type: ignore[misc]
         super().__init__("dynastar", **options)
         self.parameters = Parameters(self)
         settings = self.parameters.settings
-        self.driver = Driver(settings, self.parameters.robot, self.parameters.config)
+        self.bridge = Bridge(settings, self.parameters.robot, self.parameters.config)
         self._out = Messages(make)
         self._bag = BagWriter(Path(settings.bag), aside=False) if settings.bag else None
         self._ticked = -math.inf
         self._clock_read, self._clock_moved = -math.inf, time.monotonic()
         twist = "TwistStamped" if settings.enable_stamped_cmd_vel else "Twist"
-        self._kinds = {**TAKES, **SHOWS, "cmd_vel": f"geometry_msgs/msg/{twist}"}
+        self._kinds = {**TAKES, **PUBLISHES, "cmd_vel": f"geometry_msgs/msg/{twist}"}
         self._outlets = {
             topic: self.create_publisher(message_class(self._kinds[topic]), topic, quality(topic))
-            for topic in (*SHOWS, "cmd_vel")
+            for topic in (*PUBLISHES, "cmd_vel")
         }
-        self._shown = Shown(
+        self._status = StatusPublisher(
             self._out, settings.global_frame, self.get_name(), self._publish, self._wanted
         )
         robot, config = self.parameters.robot, self.parameters.config
         self._note_request(start_request(settings, robot, config))
         self._subscribe()
         self._actions = self._serve()
-        steady = Clock(
-            clock_type=ClockType.STEADY_TIME
-        )  # goes on when a simulator's clock does not
+        # The steady clock goes on when a simulator's clock does not.
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
         late = 1.2 * self.parameters.config.period
         self._watchdog = self.create_timer(late, self._tick, clock=steady)
         self.add_on_set_parameters_callback(self._set_parameters)
@@ -103,13 +102,13 @@ class NavigatorNode(Node):  # type: ignore[misc]
 
     def _take(self, topic: str, message: Any) -> None:
         self._record(topic, message, self._time())
-        words = self.driver.take(topic, message)
+        words = self.bridge.take(topic, message)
         if words:
             self.get_logger().warning(words, throttle_duration_sec=1.0)
         elif topic == "map":
-            grid = self.driver.grid
+            grid = self.bridge.grid
             assert grid is not None
-            self._shown.reset()
+            self._status.reset()
             self.get_logger().info(f"map: {grid.columns} x {grid.rows} cells, {grid.extent()}")
         elif topic == "goal_pose" and self._actions is not None:
             self._actions.replaced()
@@ -118,7 +117,7 @@ class NavigatorNode(Node):  # type: ignore[misc]
 
     def _request(self, **wanted: Any) -> None:
         """Carries out a request of a service, an action or a parameter, and records it."""
-        self._note_request(self.driver.request(**wanted))
+        self._note_request(self.bridge.request(**wanted))
 
     def _note_request(self, words: str) -> None:
         if self._bag is not None:
@@ -134,11 +133,11 @@ class NavigatorNode(Node):  # type: ignore[misc]
         steady = time.monotonic()
         if now != self._clock_read:
             self._clock_read, self._clock_moved = now, steady
-            if self.driver.fault:
+            if self.bridge.fault:
                 self._request(fault="")
-        elif (
-            not self.driver.fault and steady - self._clock_moved > self.parameters.settings.data_age
-        ):
+            return
+        age = self.parameters.settings.data_age
+        if not self.bridge.fault and steady - self._clock_moved > age:
             self._request(fault="the clock stands still")
 
     def _clock_time(self) -> float:
@@ -148,9 +147,9 @@ class NavigatorNode(Node):  # type: ignore[misc]
     def _time(self) -> float:
         """The clock in seconds; one that went back starts everything anew, without a goal."""
         now = self._clock_time()
-        if self.driver.jumped(now):
+        if self.bridge.jumped(now):
             self._request(restart="the clock went back")
-            self._shown.reset()
+            self._status.reset()
             self._ticked = -math.inf
             self.get_logger().warning("the clock went back: the goal is dropped")
         return now
@@ -160,18 +159,18 @@ class NavigatorNode(Node):  # type: ignore[misc]
         now = self._ticked = self._time()
         self._watchdog.reset()
         self._check_clock(now)
-        tick = self.driver.tick(now)
+        tick = self.bridge.tick(now)
         self._send(tick.command, now)
         values = {"v": f"{tick.command.v:.3f} m/s", "omega": f"{tick.command.omega:.3f} rad/s"}
-        if tick.status is not None and self.driver.navigator is not None:
-            self._shown.show(self.driver.navigator, tick.status, tick.pose, now)
+        if tick.status is not None and self.bridge.navigator is not None:
+            self._status.show(self.bridge.navigator, tick.status, tick.robot, now)
             values |= {
                 "limited by": tick.status.limited_by,
                 "goals left": str(tick.status.goals_left),
                 "replans": str(tick.status.replans),
             }
-        values["refused"] = self.driver.refused
-        self._shown.say(tick.state, tick.reason, values, now, time.monotonic())
+        values["refused"] = self.bridge.refused
+        self._status.say(tick.state, tick.reason, values, now, time.monotonic())
         if self._actions is not None:
             self._actions.update(tick, now)
 
@@ -209,7 +208,7 @@ class NavigatorNode(Node):  # type: ignore[misc]
 
     def _make_plan(self, request: GetPlan.Request, response: GetPlan.Response) -> GetPlan.Response:
         """A path on the map as it is known, for the robot's disc; empty, with a word, if there is none."""
-        frame, grid = self.parameters.settings.global_frame, self.driver.grid
+        frame, grid = self.parameters.settings.global_frame, self.bridge.grid
         try:
             if grid is None:
                 raise InputError("there is no map yet")

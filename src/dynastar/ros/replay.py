@@ -18,7 +18,7 @@ from dynastar.navigator import configured
 from dynastar.navigator.config import changed
 from dynastar.robot import Robot
 from dynastar.ros.bag import BagReader
-from dynastar.ros.driver import REQUESTS, TAKES, Driver, started
+from dynastar.ros.bridge import REQUESTS, TAKES, Bridge, started
 from dynastar.ros.incoming import seconds, twist_of
 from dynastar.ros.localization import PoseSource
 from dynastar.ros.settings import NodeSettings
@@ -31,13 +31,6 @@ OF_THE_ROBOT = (
     "heading_tolerance", "unknown",
 )  # fmt: skip
 SAME = 1e-6  # m/s and rad/s up to which two commands are the same
-
-
-class Topics(NamedTuple):
-    """Where a recording has what the driver takes: full names by short ones, and foreign recordings."""
-
-    names: dict[str, str]
-    of_dynastar: bool
 
 
 @dataclass(frozen=True)
@@ -79,29 +72,29 @@ def _median(values: npt.NDArray[np.float64]) -> float:
     return float(np.median(values)) if len(values) else math.nan
 
 
-class Instead(NamedTuple):
-    """What a replay takes instead of what was recorded; None and {} leave it."""
+class Overrides(NamedTuple):
+    """Robot, preset, settings and source of the pose instead of those recorded; None and {} keep them."""
 
     robot: Robot | None = None
     preset: str | None = None
     settings: Mapping[str, Any] = {}
     pose_source: PoseSource | None = None
 
-    def driver(self, recorded: Driver | None) -> Driver:
-        """A driver like the recorded one, or a new one, but for what is given here."""
+    def bridge(self, recorded: Bridge | None) -> Bridge:
+        """A bridge like the recorded one, or a new one, but for what is given here."""
         if recorded is None:
             assert self.robot is not None
             source = self.pose_source or "odom"
             own = NodeSettings(robot=self.robot.name, pose_source=source)
             config = configured(self.preset or "default", self.settings)
-            return Driver(own, self.robot, config)
+            return Bridge(own, self.robot, config)
         own, config = recorded.settings, recorded.config
         if self.pose_source is not None:
             own = own._replace(pose_source=self.pose_source)
         if self.preset is not None:
             config = configured(self.preset, {name: getattr(config, name) for name in OF_THE_ROBOT})
         config = changed(config, self.settings)
-        return Driver(own, self.robot or recorded.robot, config)
+        return Bridge(own, self.robot or recorded.robot, config)
 
     @property
     def keeps_settings(self) -> bool:
@@ -111,23 +104,23 @@ class Instead(NamedTuple):
 
 def replay(
     path: Path,
-    instead: Instead = Instead(),
+    overrides: Overrides = Overrides(),
     remap: Mapping[str, str] | None = None,
     progress: bool = False,
 ) -> Replay:
     """Gives a recording's messages to a navigator and returns what it answers.
 
     A recording by dynastar says which robot and settings it was made with; others need
-    ``instead.robot``. dynastar's own are ticked when they were, others at each scan, by its stamp.
-    ``remap`` maps a topic as in ``driver.TAKES`` to the recording's name for it. Raises DataError for
+    ``overrides.robot``. dynastar's own are ticked when they were, others at each scan, by its stamp.
+    ``remap`` maps a topic as in ``bridge.TAKES`` to the recording's name for it. Raises DataError for
     a recording that cannot be read or lacks map, scan or odometry.
     """
     bag = BagReader(path)
     try:
         topics = _topics(bag, remap or {})
-        if not topics.of_dynastar and instead.robot is None:
+        if REQUESTS not in topics and overrides.robot is None:
             raise DataError(f"{bag.path} is not by dynastar: name its robot with --robot")
-        ticks = list(_ticks(bag, topics, instead, progress))
+        ticks = list(_ticks(bag, topics, overrides, progress))
     finally:
         bag.close()
     refused = dict.fromkeys(tick.refused for tick in ticks if tick.refused)
@@ -141,8 +134,8 @@ def replay(
     )
 
 
-def _topics(bag: BagReader, remap: Mapping[str, str]) -> Topics:
-    """The recording's names of what the driver takes; DataError where one is missing or not clear."""
+def _topics(bag: BagReader, remap: Mapping[str, str]) -> dict[str, str]:
+    """The recording's topics by the bridge's names; DataError where one is missing or ambiguous."""
     names: dict[str, str] = {}
     kinds = {**TAKES, REQUESTS: "std_msgs/msg/String", COMMANDS: ""}
     for short, kind in kinds.items():
@@ -168,7 +161,7 @@ def _topics(bag: BagReader, remap: Mapping[str, str]) -> Topics:
             raise DataError(
                 f"{bag.path}: no topic '{short}' of type {TAKES[short]} in it, which has {have}"
             )
-    return Topics(names, REQUESTS in names)
+    return names
 
 
 class _Tick(NamedTuple):
@@ -180,46 +173,51 @@ class _Tick(NamedTuple):
     refused: str
 
 
-def _ticks(bag: BagReader, topics: Topics, instead: Instead, progress: bool) -> Iterator[_Tick]:
+def _ticks(
+    bag: BagReader, topics: Mapping[str, str], overrides: Overrides, progress: bool
+) -> Iterator[_Tick]:
     """Each tick of a replay, in order."""
-    driver = None if topics.of_dynastar else instead.driver(None)
-    shorts = {name: short for short, name in topics.names.items()}
+    ours = REQUESTS in topics  # recorded by dynastar
+    bridge = None if ours else overrides.bridge(None)
+    shorts = {name: short for short, name in topics.items()}
     refused = ""
     for name, at, message in tqdm(
         bag.messages(set(shorts)), desc="replay", unit=" messages", disable=not progress, delay=0.5
     ):
         short = shorts[name]
         if short == REQUESTS:
-            driver, refused = _requested(driver, message.data, instead)
-        elif driver is not None:
+            bridge, refused = _requested(bridge, message.data, overrides)
+        elif bridge is not None:
             if short != COMMANDS:
-                refused = driver.take(short, message) or refused
-            if topics.of_dynastar and short == COMMANDS:
-                yield _ticked(driver, at, twist_of(getattr(message, "twist", message)), refused)
+                refused = bridge.take(short, message) or refused
+            if ours and short == COMMANDS:
+                yield _ticked(bridge, at, twist_of(getattr(message, "twist", message)), refused)
                 refused = ""
-            elif not topics.of_dynastar and short == "scan":
-                yield _ticked(driver, seconds(message.header.stamp), NOTHING, refused)
+            elif not ours and short == "scan":
+                yield _ticked(bridge, seconds(message.header.stamp), NOTHING, refused)
                 refused = ""
 
 
-def _ticked(driver: Driver, now: float, recorded: Twist, refused: str) -> _Tick:
+def _ticked(bridge: Bridge, now: float, recorded: Twist, refused: str) -> _Tick:
     began = time.perf_counter()
-    tick = driver.tick(now)
+    tick = bridge.tick(now)
     took = 1e3 * (time.perf_counter() - began)
     return _Tick(now, tick.command, recorded, took, tick.state, refused)
 
 
-def _requested(driver: Driver | None, words: str, instead: Instead) -> tuple[Driver | None, str]:
+def _requested(
+    bridge: Bridge | None, words: str, overrides: Overrides
+) -> tuple[Bridge | None, str]:
     """Carries out a recorded request; settings that are given for the replay stay as they are."""
     try:
         wanted = dict(json.loads(words))
     except (ValueError, TypeError) as error:
-        return driver, f"a request cannot be read: {error}"
+        return bridge, f"a request cannot be read: {error}"
     if "start" in wanted:
-        return instead.driver(started(wanted["start"])), ""
+        return overrides.bridge(started(wanted["start"])), ""
     try:
-        if driver is not None and (instead.keeps_settings or "settings" not in wanted):
-            driver.request(**wanted)
+        if bridge is not None and (overrides.keeps_settings or "settings" not in wanted):
+            bridge.request(**wanted)
     except (DynastarError, TypeError) as error:
-        return driver, str(error)
-    return driver, ""
+        return bridge, str(error)
+    return bridge, ""

@@ -31,7 +31,7 @@ class NodeSettings(NamedTuple):
         tuple[float, ...],
         Field("x, y, yaw of the lidar; empty: from tf, or as built in", "", -10.0, 10.0),
     ] = ()
-    enable_stamped_cmd_vel: Annotated[bool, Field("TwistStamped instead of Twist")] = False
+    enable_stamped_cmd_vel: Annotated[bool, Field("TwistStamped overrides of Twist")] = False
     data_age: Annotated[float, AGE] = 0.2
     pose_age: Annotated[
         float, Field("largest age of the transform from odometry to map, with tf", "s", 0.1, 1e9)

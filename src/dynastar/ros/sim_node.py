@@ -27,7 +27,7 @@ TIMEOUT = 0.5  # s without a command after which the drive stops, as the robots'
 
 
 class SimulatorNode(Node):  # type: ignore[misc]
-    """Runs a scenario in real time, or ``speed`` times as fast, with /clock if asked."""
+    """Runs a scenario in real time; with the parameter publish_clock it is the clock."""
 
     def __init__(self, scenario: Scenario, **options: Any) -> None:
         super().__init__("dynastar_sim", **options)

@@ -1,4 +1,4 @@
-"""Writing down what the navigator thinks, tick by tick."""
+"""Recording what the navigator considers, tick by tick."""
 
 from typing import Any
 
@@ -24,6 +24,7 @@ class Tracer:
         self._reasons: list[str] = []
         self._seen: list[npt.NDArray[np.int32]] = []
         self._known: npt.NDArray[np.bool_] | None = None
+        self._frame = (1.0, 0.0, 0.0, 0.0)
 
     def tick(self, status: Any) -> None:
         """One more tick, with the status after it."""
@@ -54,13 +55,15 @@ class Tracer:
         planning_map = getattr(self._navigator, "planning_map", None)
         if planning_map is None:
             return
-        seen = planning_map.seen
+        seen, (resolution, x, y, yaw) = planning_map.seen, planning_map.frame
+        self._frame = (resolution, x, y, yaw)
         if self._known is None or self._known.shape != seen.shape:
             self._known = np.zeros_like(seen)
-        changed = np.flatnonzero(seen != self._known)
-        if len(changed):
-            now = np.full(len(changed), len(self._reasons) - 1)
-            self._seen.append(np.column_stack([now, changed, seen.flat[changed]]).astype(np.int32))
+        rows, columns = np.nonzero(seen != self._known)
+        if len(rows):
+            now = np.full(len(rows), len(self._reasons) - 1)
+            cells = np.column_stack([now, rows, columns, seen[rows, columns]])
+            self._seen.append(cells.astype(np.int32))
             self._known = seen.copy()
 
     def trace(self) -> Trace:
@@ -74,6 +77,6 @@ class Tracer:
             np.concatenate([np.empty((0, 5), np.float32), *self._tracks]),
             np.array([len(one) for one in self._tracks], np.int64),
             np.array(self._reasons, np.str_),
-            np.concatenate([np.empty((0, 3), np.int32), *self._seen]),
-            0 if self._known is None else self._known.shape[1],
+            np.concatenate([np.empty((0, 4), np.int32), *self._seen]),
+            self._frame,
         )

@@ -13,8 +13,8 @@ import pytest
 from dynastar import io
 from dynastar.cli import main
 from dynastar.errors import InputError
-from dynastar.web import report_html
-from dynastar.web.report import _runs
+from dynastar.page import report_html
+from dynastar.page.report import _runs
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 KINDS = {"int8": "i1", "uint8": "u1", "uint16": "<u2", "int32": "<i4", "float32": "<f4"}

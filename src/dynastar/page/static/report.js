@@ -58,12 +58,15 @@ class Replay {
     this.trackEnds = offsets(unpacked(trace.trackRows));
     this.reason = words(trace.reasons);
     this.traced = this.candidateEnds.length - 1;
-    const [resolution] = this.data.exploredFrame;
-    const factor = this.data.grid.frame[0] / resolution;
-    this.seenCells = new Cells(Math.round(this.data.grid.rows * factor), trace.seenColumns || 1, this.data.exploredFrame);
-    this.seenColumns = trace.seenColumns;
+    this.seenCells = this.cellsOf(trace.seenFrame);
     this.seenTo = 0;
     this.seenTick = -1;
+  }
+
+  // Empty cells over the map in a frame whose cells may be smaller than the map's.
+  cellsOf(frame) {
+    const { rows, columns } = this.data.grid, factor = this.data.grid.frame[0] / frame[0];
+    return new Cells(Math.round(rows * factor), Math.round(columns * factor), frame);
   }
 
   tickAt(time) {
@@ -91,10 +94,9 @@ class Replay {
     }
     this.seenTick = tick;
     const colour = colours().seen;
-    for (; 3 * this.seenTo < this.seen.length && this.seen[3 * this.seenTo] <= tick; this.seenTo++) {
-      const cell = this.seen[3 * this.seenTo + 1];
-      const row = Math.floor(cell / this.seenColumns), column = cell % this.seenColumns;
-      if (this.seen[3 * this.seenTo + 2]) this.seenCells.run(row, column, 1, colour);
+    for (; 4 * this.seenTo < this.seen.length && this.seen[4 * this.seenTo] <= tick; this.seenTo++) {
+      const [, row, column, blocked] = this.seen.subarray(4 * this.seenTo, 4 * this.seenTo + 4);
+      if (blocked) this.seenCells.run(row, column, 1, colour);
       else this.seenCells.context.clearRect(column, row, 1, 1);
     }
     return this.seenCells;
@@ -103,8 +105,7 @@ class Replay {
   exploredAt(plan) {
     if (plan < 0 || !this.plans[plan].explored.length) return null;
     if (plan !== this.exploredOf) {
-      const frame = this.data.exploredFrame, factor = this.data.grid.frame[0] / frame[0];
-      const cells = new Cells(Math.round(this.data.grid.rows * factor), Math.round(this.data.grid.columns * factor), frame);
+      const cells = this.cellsOf(this.data.exploredFrame);
       const runs = this.plans[plan].explored, colour = colours().explored;
       for (let i = 0; i < runs.length; i += 3) cells.run(runs[i], runs[i + 1], runs[i + 2], colour);
       this.exploredOf = plan;

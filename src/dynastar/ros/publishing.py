@@ -13,7 +13,7 @@ from dynastar.navigator import Navigator, RobotState, Status
 from dynastar.robot import arc
 from dynastar.ros.outgoing import Colour, Messages
 
-SHOWN_EVERY = 0.2  # s between two pictures of the window, the tracks and the local map
+EVERY = 0.2  # s between two pictures of the window, the tracks and the local map
 AHEAD = 1.0  # s for which a sample's arc is drawn
 POINTS = 6  # of a drawn arc
 GREY: Colour = (0.6, 0.6, 0.6, 0.5)
@@ -22,7 +22,7 @@ OK_STATES = ("idle", "following", "avoiding", "waiting", "turning", "recovering"
 OK, WARN, ERROR = (bytes([level]) for level in range(3))  # levels of a DiagnosticStatus
 LINE_LIST, CYLINDER, DELETE_ALL = 5, 3, 3  # of a Marker
 
-SHOWS = {
+PUBLISHES = {
     "plan": "nav_msgs/msg/Path",
     "local_plan": "nav_msgs/msg/Path",
     "local_map": "nav_msgs/msg/OccupancyGrid",
@@ -31,8 +31,8 @@ SHOWS = {
 }
 
 
-class Shown:
-    """Says what to publish when; ``publish(topic, message)`` does it, ``wanted(topic)`` says who asks."""
+class StatusPublisher:
+    """Decides when to publish what; ``publish(topic, message)`` sends it where it is ``wanted(topic)``."""
 
     def __init__(
         self,
@@ -48,7 +48,7 @@ class Shown:
 
     def reset(self) -> None:
         """Time or map have changed: everything is shown again."""
-        self._plan_id, self._shown, self._said_at = -1, -math.inf, -math.inf
+        self._plan_id, self._published, self._said_at = -1, -math.inf, -math.inf
         self._said: tuple[str, str] | None = None
 
     def show(
@@ -59,9 +59,9 @@ class Shown:
         if status.plan is not None and status.plan_id != self._plan_id:
             self._plan_id = status.plan_id
             self._publish("plan", out.path(status.plan.path.points, frame, now))
-        if state is None or not math.isfinite(state.pose.x) or now < self._shown + SHOWN_EVERY:
+        if state is None or not math.isfinite(state.pose.x) or now < self._published + EVERY:
             return
-        self._shown = now
+        self._published = now
         if self._wanted("local_plan"):
             self._publish("local_plan", out.path(_driven(state, status), frame, now))
         if self._wanted("local_map"):

@@ -62,7 +62,7 @@ def name_of(episode: Episode) -> str:
 
 
 def _static(name: str) -> str:
-    return files("dynastar.web").joinpath("static", name).read_text(encoding="utf-8")
+    return files("dynastar.page").joinpath("static", name).read_text(encoding="utf-8")
 
 
 def _data(episode: Episode) -> dict[str, Any]:
@@ -125,7 +125,7 @@ def _trace(trace: Trace) -> dict[str, Any]:
         "trackRows": _packed(trace.track_rows, np.uint16),
         "reasons": _words(trace.reasons),
         "seen": _packed(trace.seen, np.int32),
-        "seenColumns": trace.seen_columns,
+        "seenFrame": list(trace.seen_frame),
     }
 
 

@@ -38,7 +38,7 @@ REQUESTS = "dynastar/requests"  # what was asked for by services, actions and pa
 
 
 def start_request(settings: NodeSettings, robot: Robot, config: NavigatorConfig) -> str:
-    """The first request of a recording: what the driver was made of, as JSON."""
+    """The first request of a recording: what the bridge was made of, as JSON."""
     table = {
         "settings": settings._asdict(),
         "robot": robot_table(robot),
@@ -47,27 +47,27 @@ def start_request(settings: NodeSettings, robot: Robot, config: NavigatorConfig)
     return json.dumps({"start": table})
 
 
-def started(table: Mapping[str, Any]) -> "Driver":
-    """The driver that a recording's first request tells of; InputError where it cannot be."""
+def started(table: Mapping[str, Any]) -> "Bridge":
+    """The bridge that a recording's first request tells of; InputError where it cannot be."""
     try:
         settings = checked(NodeSettings, table["settings"], "settings")
         config = checked(NavigatorConfig, table["config"], "config")
-        return Driver(settings, robot_from(table["robot"]), config)
+        return Bridge(settings, robot_from(table["robot"]), config)
     except (KeyError, TypeError) as error:
         raise InputError(f"a recording's start cannot be read: {error}") from None
 
 
 class Tick(NamedTuple):
-    """One answer: the command, the navigator's status, and the state and its reason in words."""
+    """Result of a tick: command, state of the navigator with its reason, status, state of the robot."""
 
     command: Twist
     state: str
     reason: str
     status: Status | None = None
-    pose: RobotState | None = None
+    robot: RobotState | None = None
 
 
-class Driver:
+class Bridge:
     """A navigator that is fed with messages, and brakes while they are missing, late or wrong."""
 
     def __init__(self, settings: NodeSettings, robot: Robot, config: NavigatorConfig) -> None:
@@ -79,8 +79,7 @@ class Driver:
         self.refused = ""  # what was refused last, and why
         self.fault = ""  # what else keeps it from driving, as a clock that stands still
         self._odometry_frame = ""
-        self._map: Any = None
-        self._masks: dict[str, Any] = {}
+        self._layers: dict[str, OccupancyGrid] = {}  # the newest map and masks
         self._scan: LaserScan | None = None
         self._taken = False  # whether the newest scan has been given to the navigator
         self._now = -math.inf
@@ -90,13 +89,8 @@ class Driver:
     def take(self, topic: str, message: Any) -> str:
         """Takes in a message of a topic in TAKES; what is wrong with it, in words, or ""."""
         try:
-            if topic == "map":
-                self._map = message
-                self._take_map()
-            elif topic.endswith("_filter_mask"):
-                self._masks[topic] = message
-                if self._map is not None:
-                    self._take_map()
+            if topic == "map" or topic.endswith("_filter_mask"):
+                self._take_layer(topic, message)
             elif topic == "scan":
                 self._take_scan(message)
             elif topic == "odom":
@@ -112,24 +106,25 @@ class Driver:
             return self.refused
         return ""
 
-    def _take_map(self) -> None:
-        """A navigator for the map and the masks, or the present one with another map."""
+    def _take_layer(self, topic: str, message: Any) -> None:
+        """A navigator for the map with its masks, or the present one with another map."""
         settings, frame = self.settings, self.settings.global_frame
-        grid = grid_of(self._map, frame)
-        if "keepout_filter_mask" in self._masks:
-            grid = with_keepout(grid, grid_of(self._masks["keepout_filter_mask"], frame))
-        if "speed_filter_mask" in self._masks:
+        grids = {**self._layers, topic: grid_of(message, frame)}
+        grid = grids.get("map")
+        if grid is not None and "keepout_filter_mask" in grids:
+            grid = with_keepout(grid, grids["keepout_filter_mask"])
+        if grid is not None and "speed_filter_mask" in grids:
             scale = SpeedScale(
                 settings.speed_filter_type,
                 settings.speed_filter_base,
                 settings.speed_filter_multiplier,
             )
-            mask = grid_of(self._masks["speed_filter_mask"], frame)
-            grid = with_speed_limits(grid, mask, self.robot.limits.v_max, scale)
-        self.grid = grid
-        if self.navigator is None:
+            v_max = self.robot.limits.v_max
+            grid = with_speed_limits(grid, grids["speed_filter_mask"], v_max, scale)
+        self._layers, self.grid = grids, grid
+        if grid is not None and self.navigator is None:
             self.navigator = Navigator(grid, self.robot, self.config)
-        else:
+        elif grid is not None and self.navigator is not None:
             self.navigator.set_map(grid)
 
     def _take_scan(self, message: Any) -> None:
@@ -173,19 +168,17 @@ class Driver:
         self.navigator.follow(np.array(points, dtype=np.float64).reshape(-1, 2), heading)
 
     def request(self, **wanted: Any) -> str:
-        """Carries out what is wanted by name, and returns it as JSON.
+        """Carries out requests by name, and returns them as JSON.
 
-        ``goals``, ``follow`` with ``heading``, ``cancel``, ``clear``, ``settings``, ``restart``, ``fault``.
-
-        Raises InputError for what cannot be, and leaves everything as it was.
+        ``goals`` (x, y, heading), ``follow`` (points, heading), ``cancel``, ``clear``, ``settings``,
+        ``restart`` and ``fault`` with their reasons. Raises InputError for one that cannot be carried out,
+        which changes nothing.
         """
         for name, value in wanted.items():
             if name == "goals":
                 self.set_goals([Goal(*goal) for goal in value])
             elif name == "follow":
-                self.follow(value, wanted.get("heading"))
-            elif name == "heading":
-                continue
+                self.follow(*value)
             elif name == "settings":
                 self._change(value)
             elif name == "restart":

@@ -1,0 +1,188 @@
+"""Messages in, commands out: what is late, wrong or missing brakes the robot and says why."""
+
+import json
+import math
+import re
+
+import numpy as np
+import pytest
+
+from dynastar.errors import InputError
+from dynastar.geometry import Goal, Pose2D, Twist
+from dynastar.navigator import configured
+from dynastar.robot import ROBOTS
+from dynastar.ros.bag import as_read, make
+from dynastar.ros.bridge import Bridge, start_request, started
+from dynastar.ros.outgoing import Messages
+from dynastar.ros.settings import NodeSettings
+
+OUT = Messages(make)
+ROOM = np.zeros((100, 100), np.int8)
+ROOM[[0, -1]] = ROOM[:, [0, -1]] = 100
+START = Pose2D(1.0, 2.5, 0.0)
+
+
+def a_map(values=ROOM):
+    return OUT.grid(values, (0.05, 0.0, 0.0), "map", 0.0)
+
+
+def a_goal(x, y, frame="map"):
+    pose = OUT.pose(Pose2D(x, y, 0.0))
+    return make("geometry_msgs/msg/PoseStamped", header=OUT.header(frame, 0.0), pose=pose)
+
+
+def a_scan(time, frame="laser"):
+    ranges = np.full(360, np.inf, np.float32)
+    angles = {"angle_min": 0.0, "angle_increment": math.tau / 360}
+    limits = {"range_min": 0.12, "range_max": 3.5, "ranges": ranges}
+    return make("sensor_msgs/msg/LaserScan", header=OUT.header(frame, time), **angles, **limits)
+
+
+def odometry(time, pose=START, twist=Twist(0.0, 0.0)):
+    return OUT.odometry(pose, twist, ("odom", "base_link"), time)
+
+
+def feed(bridge, time, twist=Twist(0.0, 0.0)):
+    assert bridge.take("odom", odometry(time, twist=twist)) == ""
+    assert bridge.take("scan", a_scan(time)) == ""
+    return bridge.tick(time)
+
+
+@pytest.fixture
+def bridge():
+    made = Bridge(NodeSettings(), ROBOTS["turtlebot3_burger"], configured("default"))
+    assert made.tick(0.0).reason == "no map has come yet"
+    assert made.take("map", a_map()) == ""
+    return made
+
+
+def test_it_drives_when_it_has_map_scan_odometry_and_goal(bridge):
+    assert bridge.tick(0.0).reason == "no odometry has come yet"
+    bridge.take("odom", odometry(0.0))
+    assert bridge.tick(0.0).reason == "no scan has come yet"
+    assert feed(bridge, 0.05).state == "idle"
+    assert bridge.take("goal_pose", a_goal(4.0, 2.5)) == ""
+    assert feed(bridge, 0.1).command.v > 0.0
+
+
+@pytest.mark.parametrize(
+    ("after", "says"),
+    [
+        (lambda d: d.take("odom", odometry(0.5)), "the scan is 0.4"),
+        (lambda d: d.take("scan", a_scan(0.5)), "the odometry is 0.4"),
+        (lambda d: feed(d, 1.5), "ahead of the clock"),
+        (lambda d: d.request(fault="the clock stands still"), "the clock stands still"),
+    ],
+)
+def test_what_is_late_or_ahead_brakes_it(bridge, after, says):
+    bridge.take("goal_pose", a_goal(4.0, 2.5))
+    for k in range(5):
+        assert feed(bridge, 0.05 + 0.01 * k, Twist(0.2, 0.0)).state == "following"
+    after(bridge)
+    tick = bridge.tick(0.5)
+    assert says in tick.reason
+    assert tick.state == "sensor_lost"
+    assert tick.command.v < 0.2
+
+
+def test_goals_that_cannot_be_leave_the_one_under_way(bridge):
+    bridge.take("goal_pose", a_goal(4.0, 2.5))
+    for goal, says in (
+        (a_goal(4.0, 2.5, "odom"), "frame 'odom'"),
+        (a_goal(math.nan, 2.5), "finite"),
+        (a_goal(400.0, 2.5), "off the map"),
+    ):
+        words = bridge.take("goal_pose", goal)
+        assert words.startswith("the goal is refused")
+        assert re.search(says, words)
+        assert bridge.navigator.mission.goals == [Goal(4.0, 2.5, 0.0)]
+
+
+def test_a_pose_from_tf_has_to_be_there_and_new():
+    own = NodeSettings(pose_source="tf", pose_age=1.0)
+    bridge = Bridge(own, ROBOTS["turtlebot3_burger"], configured("default"))
+    bridge.take("map", a_map())
+    assert "tf does not say where 'odom' is in 'map'" in feed(bridge, 0.0).reason
+    bridge.take("/tf", OUT.transforms([("map", "odom", Pose2D(0.5, 0.0, 0.0))], 0.0))
+    tick = feed(bridge, 0.05)
+    assert (tick.state, tick.robot.pose.x) == ("idle", 1.5)
+    assert "transform of 'odom' is 1.20 s old" in feed(bridge, 1.2).reason
+    static = OUT.transforms([("map", "odom", Pose2D(0.5, 0.0, 0.0))], 0.0)
+    bridge.take("/tf_static", static)
+    assert feed(bridge, 9.0).state == "idle"
+
+
+def test_the_mount_of_the_lidar_is_from_tf_unless_it_is_given(bridge):
+    bridge.take("scan", a_scan(0.0))
+    assert bridge._scan.mount == ROBOTS["turtlebot3_burger"].lidar.mount
+    bridge.take("/tf_static", OUT.transforms([("base_link", "laser", Pose2D(0.1, 0.0, 1.0))], 0.0))
+    bridge.take("scan", a_scan(0.1))
+    assert bridge._scan.mount == pytest.approx((0.1, 0.0, 1.0))
+    bridge.settings = bridge.settings._replace(laser_pose=(0.0, 0.0, 0.0))
+    bridge.take("scan", a_scan(0.2))
+    assert bridge._scan.mount == ROBOTS["turtlebot3_burger"].lidar.mount
+
+
+def test_masks_become_keepout_zones_and_speed_limits(bridge):
+    zone = np.zeros_like(ROOM)
+    zone[40:60, 40:60] = 100
+    assert bridge.take("keepout_filter_mask", a_map(zone)) == ""
+    assert bridge.grid.keepout.sum() == 400
+    assert bridge.take("speed_filter_mask", a_map(zone // 2)) == ""
+    assert bridge.grid.speed_limit[50, 50] == pytest.approx(0.11)
+    assert "expected 100 x 100" in bridge.take("map", make_short())
+    assert bridge.grid.keepout.sum() == 400
+
+
+def test_a_resolution_that_was_a_float32_refines_nothing(bridge):
+    fine = configured("default", {"planning_resolution": 0.05})
+    bridge = Bridge(NodeSettings(), ROBOTS["jackal"], fine)
+    bridge.take("map", as_read("nav_msgs/msg/OccupancyGrid", a_map()))
+    assert bridge.grid.resolution != 0.05
+    assert bridge.navigator.planning_map.prior.shape == ROOM.shape
+
+
+def make_short():
+    message = a_map()
+    message.data = message.data[:-1]
+    return message
+
+
+def test_requests_are_carried_out_and_told(bridge):
+    feed(bridge, 0.0)
+    words = bridge.request(goals=[(4.0, 2.5, None), (1.0, 1.0, 0.5)])
+    assert json.loads(words) == {"goals": [[4.0, 2.5, None], [1.0, 1.0, 0.5]]}
+    assert len(bridge.navigator.mission.goals) == 2
+    bridge.request(settings={"dwa": {"horizon": 2.5}})
+    assert bridge.navigator.config.dwa.horizon == 2.5
+    assert len(bridge.navigator.mission.goals) == 2
+    bridge.request(cancel=True)
+    assert bridge.navigator.mission.goals == []
+    bridge.request(clear=True)
+    bridge.request(follow=([[1.0, 2.5], [3.0, 2.5]], 0.0))
+    assert feed(bridge, 0.05).command.v > 0.0
+    with pytest.raises(InputError, match="finite"):
+        bridge.request(follow=([[1.0, math.nan]], None))
+    with pytest.raises(InputError, match="unknown request 'dance'"):
+        bridge.request(dance=True)
+
+
+def test_a_clock_that_goes_back_drops_the_goal_and_the_data(bridge):
+    feed(bridge, 100.0)
+    bridge.take("goal_pose", a_goal(4.0, 2.5))
+    assert not bridge.jumped(100.0)
+    assert not bridge.jumped(99.9)
+    assert bridge.jumped(3.0)
+    bridge.request(restart="the clock went back")
+    assert bridge.tick(3.0).reason == "no odometry has come yet"
+    assert feed(bridge, 3.05).state == "idle"
+
+
+def test_a_driver_can_be_made_again_from_its_first_request():
+    own, robot = NodeSettings(pose_source="amcl"), ROBOTS["jackal"]
+    config = configured("paper", {"latency": 0.1})
+    made = started(json.loads(start_request(own, robot, config))["start"])
+    assert (made.settings, made.config, made.robot.limits) == (own, config, robot.limits)
+    assert np.array_equal(made.robot.footprint.vertices, robot.footprint.vertices)
+    with pytest.raises(InputError):
+        started({"settings": {}})
