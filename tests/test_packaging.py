@@ -9,6 +9,7 @@ import pytest
 
 from dynastar.cli import demo, main
 from dynastar.errors import MissingPackage
+from dynastar.page.report import SCRIPTS
 
 ROOT = Path(__file__).parents[1]
 
@@ -56,6 +57,8 @@ def test_the_wheel_has_the_examples(tmp_path):
         archive.extractall(tmp_path / "installed")
     for file in demo.examples().rglob("*.toml"):
         assert f"dynastar/examples/{file.relative_to(demo.examples())}" in inside
+    for name in ("page.html", "page.css", *SCRIPTS):
+        assert f"dynastar/page/static/{name}" in inside
     assert not [name for name in inside if "__pycache__" in name]
     asked = "import dynastar.cli.demo as d; print(d.__file__, *d.scenarios().values())"
     found = subprocess.run(

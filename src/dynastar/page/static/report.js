@@ -141,14 +141,12 @@ class Replay {
     }
     const chosen = traced >= 0 ? Array.from(this.chosen.subarray(3 * traced, 3 * traced + 3)) : [];
     return {
-      tick, time: this.times[tick], movers, candidates, tracks,
+      tick, movers, candidates, tracks,
       pose: [at(this.poses, 3, 0), at(this.poses, 3, 1), this.poses[3 * tick + 2] + part * turn],
       twist: [this.twists[2 * tick], this.twists[2 * tick + 1]],
-      command: [this.commands[2 * tick], this.commands[2 * tick + 1]],
       clearance: this.clearance[tick], state: this.state(tick), limit: this.limit(tick),
       reason: traced >= 0 ? this.reason(traced) : "",
       chosen: Number.isFinite(chosen[0]) ? chosen : null,
-      terms: traced >= 0 ? this.terms.subarray(5 * traced, 5 * traced + 5) : null,
       path: plan >= 0 ? this.plans[plan].points : null, planReason: plan >= 0 ? this.plans[plan].reason : "",
       oldPaths: this.plans.slice(0, Math.max(plan, 0)).map((one) => one.points),
       explored: this.exploredAt(plan), seen: this.seenAt(tick),
@@ -177,7 +175,7 @@ class Panel {
     const { data } = replay;
     this.map = element("canvas", { className: "map", role: "img", ariaLabel: `Map of ${data.name}` });
     this.window = element("canvas", { className: "window", role: "img", ariaLabel: "Candidates by v and omega" });
-    this.words = element("div", { className: "words", ariaLive: "off" });
+    this.words = element("div", { className: "words" });
     this.numbers = element("dl", { className: "numbers" });
     const hint = element("p", { className: "hint" });
     this.log = element("ol", { className: "log", ariaLabel: "Events" });
