@@ -93,9 +93,10 @@ class Watch:
 class Nodes:
     """Both nodes as processes."""
 
-    def __init__(self) -> None:
+    def __init__(self, bag: Path | None) -> None:
+        record = ("--ros-args", "-p", f"bag:={bag}") if bag else ()
         self.simulator = self._start("ros-sim", OFFICE)
-        self.navigator = self._start("ros", "--scenario", OFFICE)
+        self.navigator = self._start("ros", "--scenario", OFFICE, *record)
 
     def _start(self, *words: object) -> subprocess.Popen:
         env = {k: v for k, v in os.environ.items() if k != "_ROS_WHEELS_BOOTSTRAP_COMPLETE"}
@@ -119,9 +120,9 @@ class Nodes:
             process.wait(20.0)
 
 
-def run(seconds: float, wait: float) -> dict[str, float]:
-    """One pair of nodes: to and fro for ``seconds``, or with 0 a single mission."""
-    watch, nodes = Watch(), Nodes()
+def run(seconds: float, wait: float, bag: Path | None = None) -> dict[str, float]:
+    """One pair of nodes: to and fro for ``seconds``, or with 0 a single mission; recorded to ``bag``."""
+    watch, nodes = Watch(), Nodes(bag)
     try:
         started = lambda: "no goal" in watch.state or nodes.navigator.poll() is not None  # noqa: E731
         assert watch.spin(120.0, started), "the navigator says nothing for two minutes"
@@ -167,15 +168,16 @@ def main() -> None:
     parser.add_argument("--missions", type=int, default=20)
     parser.add_argument("--minutes", type=float, default=10.0)
     parser.add_argument("--json-out", type=Path)
+    parser.add_argument("--bags", type=Path, help="new folder for recordings of the missions")
     options = parser.parse_args()
     runs = []
     if options.minutes > 0.0:
         runs.append({"run": "to and fro", **run(60.0 * options.minutes, 0.0)})
         print(runs[-1], flush=True)
     for number in range(options.missions):
-        runs.append(
-            {"run": number, **run(0.0, 1.7 * number)}
-        )  # the walkers are elsewhere each time
+        bag = options.bags / f"{number:02}" if options.bags else None
+        found = run(0.0, 1.7 * number, bag)  # the walkers are elsewhere each time
+        runs.append({"run": number, **found})
         print(runs[-1], flush=True)
         if options.json_out:
             options.json_out.write_text(json.dumps(runs, indent=1))

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from dynastar.cli import demo, main
+from dynastar.cli import main
 from dynastar.errors import MissingPackage
+from dynastar.io.examples import examples_folder
 from dynastar.page.report import SCRIPTS
 
 ROOT = Path(__file__).parents[1]
@@ -55,12 +56,12 @@ def test_the_wheel_has_the_examples(tmp_path):
     with zipfile.ZipFile(wheel) as archive:
         inside = archive.namelist()
         archive.extractall(tmp_path / "installed")
-    for file in demo.examples().rglob("*.toml"):
-        assert f"dynastar/examples/{file.relative_to(demo.examples())}" in inside
-    for name in ("page.html", "page.css", *SCRIPTS):
+    for file in examples_folder().rglob("*.toml"):
+        assert f"dynastar/examples/{file.relative_to(examples_folder())}" in inside
+    for name in ("page.html", "play.html", "page.css", "play.js", *SCRIPTS):
         assert f"dynastar/page/static/{name}" in inside
     assert not [name for name in inside if "__pycache__" in name]
-    asked = "import dynastar.cli.demo as d; print(d.__file__, *d.scenarios().values())"
+    asked = "import dynastar.io.examples as e; print(e.__file__, *e.example_scenarios().values())"
     found = subprocess.run(
         [sys.executable, "-c", asked],
         cwd=tmp_path,

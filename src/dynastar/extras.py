@@ -8,6 +8,7 @@ EXTRAS = {
     "viewer": ("matplotlib",),
     "bench": ("matplotlib", "scipy"),
     "bags": ("rosbags",),
+    "play": ("starlette", "uvicorn", "websockets", "tomli_w"),
     "ros": ("rclpy", "nav_msgs", "visualization_msgs", "diagnostic_msgs", "std_srvs"),
 }
 

@@ -14,7 +14,7 @@ from dynastar import io
 from dynastar.cli import main
 from dynastar.errors import InputError
 from dynastar.page import report_html
-from dynastar.page.report import _runs
+from dynastar.page.packing import runs
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 KINDS = {"int8": "i1", "uint8": "u1", "uint16": "<u2", "int32": "<i4", "float32": "<f4"}
@@ -79,8 +79,8 @@ def test_a_notebook_shows_the_replay(episode):
 
 def test_explored_cells_are_written_as_runs():
     cells = np.array([(2, 3), (0, 1), (2, 4), (2, 6), (0, 2)], np.int32)
-    assert _runs(cells).tolist() == [[0, 1, 2], [2, 3, 2], [2, 6, 1]]
-    assert _runs(cells[:0]).shape == (0, 3)
+    assert runs(cells).tolist() == [[0, 1, 2], [2, 3, 2], [2, 6, 1]]
+    assert runs(cells[:0]).shape == (0, 3)
 
 
 def test_a_trace_is_saved_and_loaded(episode, tmp_path):

@@ -4,7 +4,16 @@ import argparse
 
 from dynastar import __version__
 from dynastar.cli import examples
-from dynastar.cli.parsing import OneLineParser, count, distance, number, path, replayed, seed
+from dynastar.cli.parsing import (
+    OneLineParser,
+    count,
+    distance,
+    number,
+    path,
+    port,
+    replayed,
+    seed,
+)
 
 PRESETS = ("default", "paper", "printed")  # those of dynastar.navigator
 # The names in dynastar.bench.runner.SUITES, which would import too much for --help.
@@ -44,6 +53,7 @@ def build_parser() -> argparse.ArgumentParser:
     _add_paper(commands)
     _add_ros(commands)
     _add_replay(commands)
+    _add_play(commands)
     warmup = commands.add_parser(
         "warmup",
         help="compile everything now, so that the first mission does not wait",
@@ -294,6 +304,31 @@ def _add_replay(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
     replay.add_argument("--out", type=path, metavar="DIR", help="default out/replay-<bag's name>")
     replay.add_argument("--json", action="store_true", help="JSON on stdout instead of a table")
     _add_set(replay)
+
+
+def _add_play(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
+    play = commands.add_parser(
+        "play",
+        help="drive live in the browser: send the robot, paint obstacles, drop walkers",
+        description="Serves a page that drives a scene live: send the robot by clicks, paint obstacles, "
+        "put walkers in its way, change weights, and see what it considers.",
+        epilog=examples.PLAY_EXAMPLES,
+    )
+    play.add_argument(
+        "scenario",
+        nargs="?",
+        metavar="SCENARIO",
+        type=path,
+        default="office",
+        help="office, twenty, field, crowd, u_trap, or a scenario file (default office)",
+    )
+    play.add_argument(
+        "--host", default="127.0.0.1", metavar="H", help="address to serve at (default 127.0.0.1)"
+    )
+    play.add_argument(
+        "--port", type=port, default=8642, metavar="N", help="0: any free one (default 8642)"
+    )
+    play.add_argument("--open", action="store_true", help="open it in the browser")
 
 
 def _add_set(parser: argparse.ArgumentParser) -> None:

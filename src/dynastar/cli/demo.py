@@ -8,39 +8,28 @@ from pathlib import Path
 from dynastar.cli import run
 from dynastar.config import choose
 from dynastar.errors import InputError
+from dynastar.io.examples import example_scenarios, examples_folder
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Runs an example as ``dynastar run`` does, or copies or lists the examples."""
     if arguments.list:
-        print("\n".join(scenarios()))
+        print("\n".join(example_scenarios()))
         return 0
     if arguments.copy is not None:
         return _copy(arguments.copy)
-    choose(arguments.name, scenarios(), "example")
-    arguments.scenario = scenarios()[arguments.name]
+    choose(arguments.name, example_scenarios(), "example")
+    arguments.scenario = example_scenarios()[arguments.name]
     arguments.seed = arguments.preset = arguments.bag = None
     arguments.set = []
     return run.execute(arguments)
-
-
-def examples() -> Path:
-    """The folder of examples: beside the package as installed, or in the clone it is imported from."""
-    package = Path(__file__).parents[1]
-    shipped, clone = package / "examples", package.parents[1] / "examples"
-    return shipped if shipped.is_dir() else clone
-
-
-def scenarios() -> dict[str, Path]:
-    """The examples' scenario files by name."""
-    return {file.stem: file for file in sorted(examples().rglob("*.toml"))}
 
 
 def _copy(folder: Path) -> int:
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError(f"--copy {folder}: is there already; expected a new or an empty folder")
     shutil.copytree(
-        examples(), folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__")
+        examples_folder(), folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__")
     )
     print(f"the examples are in {folder}", file=sys.stderr)
     return 0

@@ -106,6 +106,16 @@ Writes commands.csv, summary.json and figure.png into DIR. Recordings by dynasta
 were and give the recorded commands; others are ticked at each scan. Nothing is simulated: the robot
 moves as it was recorded, whatever is commanded."""
 
+PLAY_EXAMPLES = """\
+examples:
+  dynastar play
+  dynastar play crowd --open
+  dynastar play my_scene.toml --port 9000
+  dynastar play --host 0.0.0.0        # for others, too: the address that is printed has a token
+
+Needs pip install 'dynastar[play]'. The page saves the scene as a scenario file and the drive as an
+episode, for dynastar run and dynastar view."""
+
 EXAMPLES = """\
 examples:
   dynastar demo
@@ -115,4 +125,5 @@ examples:
   dynastar bench paper --missions 20
   dynastar bench all --quick --data data
   dynastar paper table1 --maps 100
+  dynastar play
   dynastar warmup"""

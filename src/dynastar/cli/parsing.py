@@ -104,3 +104,11 @@ def replayed(text: str) -> tuple[int, int]:
     """A mission's number N, or N:R with its repeat."""
     number, _, repeat = text.partition(":")
     return seed(number), seed(repeat or "0")
+
+
+def port(text: str) -> int:
+    """A port of TCP, or 0."""
+    value = seed(text)
+    if value > 65535:
+        raise argparse.ArgumentTypeError(f"{text!r} is no port: expected 0 to 65535")
+    return value

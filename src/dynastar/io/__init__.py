@@ -11,6 +11,7 @@ from dynastar.io.ros_map import load_ros_map, save_ros_map
 
 if TYPE_CHECKING:
     from dynastar.io.scenario_file import load_scenario, run
+    from dynastar.io.scenario_writing import save_scenario
 
 __all__ = [
     "jsonable",
@@ -24,13 +25,20 @@ __all__ = [
     "save_episode",
     "save_map",
     "save_ros_map",
+    "save_scenario",
     "write_json",
     "written_aside",
 ]
 
+_LATER = {
+    "load_scenario": "scenario_file",
+    "run": "scenario_file",
+    "save_scenario": "scenario_writing",
+}
+
 
 def __getattr__(name: str) -> Any:
     """Imports what needs the simulation when it is first asked for: a map alone loads without."""
-    if name in ("load_scenario", "run"):
-        return getattr(import_module("dynastar.io.scenario_file"), name)
+    if name in _LATER:
+        return getattr(import_module(f"dynastar.io.{_LATER[name]}"), name)
     raise AttributeError(f"module 'dynastar.io' has no attribute '{name}'")

@@ -73,19 +73,11 @@ class Navigator:
         if not robot.footprint.is_disc:
             lever += robot.footprint.circumscribed
         self.margin = half_diagonal + 2.0 * config.pose_error + config.heading_error * lever
-        self.window = DynamicWindow(robot, config.dwa, config.period)
         self.sensing = Sensing(robot, config)
-        self.guidance = Guidance(
-            len(self.sensing.local_map.states),
-            config.local_map.resolution,
-            robot.footprint.inscribed + self.margin,
-            config.dwa.comfort,
-            config.dwa.weights.simi > 0.0,
-        )
+        self.retune(config.dwa)
         self.progress = Progress(config.stuck_time)
         self.mission = Mission()
         self._planner = planner
-        self._last = AT_REST
         self._choice: Choice | None = None
         self._asked: tuple[Pose2D, Twist, Scene] | None = None
         self._commands = Commands(robot.limits, config.period, config.latency)
@@ -93,7 +85,6 @@ class Navigator:
         self.route = Route(self.planning_map, self.mission, config)
         if planner is None:
             warm_up_all()
-        warm_up(config.dwa.search)
 
     @property
     def status(self) -> Status:
@@ -121,6 +112,20 @@ class Navigator:
         For pictures: it takes longer than ``command``, and changes nothing. Call it before the next.
         """
         return None if self._asked is None else self.window.survey(*self._asked)
+
+    def retune(self, dwa: DwaConfig) -> None:
+        """Other settings of the dynamic window from now on; path, goals and what was seen stay."""
+        config = self.config = self.config._replace(dwa=dwa)
+        self.window = DynamicWindow(self.robot, dwa, config.period)
+        self.guidance = Guidance(
+            len(self.sensing.local_map.states),
+            config.local_map.resolution,
+            self.robot.footprint.inscribed + self.margin,
+            dwa.comfort,
+            dwa.weights.simi > 0.0,
+        )
+        self._last = AT_REST
+        warm_up(dwa.search)
 
     def set_map(self, grid: OccupancyGrid) -> None:
         """Another map; what was seen is kept round the robot, the next tick plans anew."""

@@ -21,20 +21,18 @@ class Solids:
     """
 
     def __init__(self, grid: OccupancyGrid, obstacles: Sequence[Floats] = ()) -> None:
-        polygons = [_polygon(ring, f"obstacle {number}") for number, ring in enumerate(obstacles)]
         border = _box_corners(np.array([[0, 0, grid.rows, grid.columns]]))
         self._grid = grid
-        self._shapes = [
+        self._mapped = [
             *shapely.polygons(_placed(_box_corners(occupied_runs(grid)), grid)),
             shapely.linearrings(_placed(border, grid)[0]),
-            *polygons,
         ]
-        self._tree = shapely.STRtree(self._shapes)
+        self.change(obstacles)
 
-    def add(self, ring: Floats, what: str = "an obstacle") -> None:
-        """Adds a polygon (k, 2), metres; ScenarioError, which calls it ``what``, if it is none."""
-        self._shapes.append(_polygon(ring, what))
-        self._tree = shapely.STRtree(self._shapes)
+    def change(self, obstacles: Sequence[Floats]) -> None:
+        """Takes polygons (k, 2), metres, in place of the present ones; ScenarioError changes nothing."""
+        polygons = [_polygon(ring, f"obstacle {number}") for number, ring in enumerate(obstacles)]
+        self._tree = shapely.STRtree([*self._mapped, *polygons])
 
     def gap(self, pose: Pose2D, footprint: Footprint) -> float:
         """Metres from the footprint at ``pose`` to anything solid; <= 0 touching or off the map."""
@@ -43,6 +41,16 @@ class Solids:
         shape = placed_footprint(pose, footprint)
         _, distance = self._tree.query_nearest(shape, return_distance=True, all_matches=False)
         return float(distance[0]) - (footprint.circumscribed if footprint.is_disc else 0.0)
+
+    def gaps(self, points: Floats) -> Floats:
+        """Metres (n,) from points (n, 2) to anything solid; 0 inside, or off the map."""
+        found = np.zeros(len(points))
+        inside = np.array([self._grid.contains(x, y) for x, y in points], np.bool_)
+        if inside.any():
+            places = shapely.points(points[inside])
+            _, distance = self._tree.query_nearest(places, return_distance=True, all_matches=False)
+            found[inside] = distance
+        return found
 
 
 def placed_footprint(pose: Pose2D, footprint: Footprint) -> shapely.Geometry:

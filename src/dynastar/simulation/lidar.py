@@ -37,13 +37,13 @@ class LidarSimulator:
         self.lidar = lidar
         self._free = free_cells(grid)
         self._frame = tuple(map(float, grid.frame))
-        self._edges = np.concatenate([np.empty((0, 4)), *map(edges_of, obstacles)])
+        self.change(obstacles)
         self._range_bound = range_bound
         self._random = random or np.random.default_rng(0)
 
-    def add(self, ring: Floats) -> None:
-        """Adds the edges of a polygon (k, 2), metres."""
-        self._edges = np.concatenate([self._edges, edges_of(ring)])
+    def change(self, obstacles: Sequence[Floats]) -> None:
+        """Takes polygons (k, 2), metres, in place of the present ones."""
+        self._edges = np.concatenate([np.empty((0, 4)), *map(edges_of, obstacles)])
 
     def scan(self, pose: Pose2D, stamp: float, discs: Floats = NO_DISCS) -> LaserScan:
         """Scan of a lidar of a robot at ``pose``; ``discs`` (m, 3) are x, y, radius in metres.

@@ -1,14 +1,14 @@
 """Writing down a run as it happens."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from dynastar.episode import Episode, EventRecord, PlanRecord
-from dynastar.geometry import Twist
+from dynastar.geometry import Goal, Twist
 from dynastar.path import Trajectory
 from dynastar.simulation.scenario import Scenario
 from dynastar.simulation.world import World
@@ -19,7 +19,7 @@ NOTHING_EXPLORED = np.empty((0, 2), dtype=np.int32)
 
 
 class Recorder:
-    """Gathers what an Episode holds, tick by tick."""
+    """Gathers what an Episode holds, tick by tick; ``plans`` and ``events`` so far may be read."""
 
     def __init__(self, scenario: Scenario, world: World) -> None:
         self._scenario, self._world = scenario, world
@@ -27,8 +27,8 @@ class Recorder:
         self._states: list[str] = []
         self._limits: list[str] = []
         self._movers: list[Floats] = []
-        self._plans: list[PlanRecord] = []
-        self._events: list[EventRecord] = []
+        self.plans: list[PlanRecord] = []
+        self.events: list[EventRecord] = []
         self._plan_id: int | None = None
         self._recoveries = 0
         self._frame = scenario.grid.frame
@@ -44,7 +44,7 @@ class Recorder:
         if status.plan is not None and status.plan_id != self._plan_id:
             self._plan_id, self._frame = status.plan_id, status.planning_frame
             explored = status.plan.explored
-            self._plans.append(
+            self.plans.append(
                 PlanRecord(
                     self._world.time,
                     str(status.plan_reason),
@@ -62,7 +62,7 @@ class Recorder:
 
     def event(self, kind: str, detail: str) -> None:
         """Something that happened now."""
-        self._events.append(EventRecord(self._world.time, kind, detail))
+        self.events.append(EventRecord(self._world.time, kind, detail))
 
     def _row(self, command: Twist, command_ms: float, state: str, limit: str) -> None:
         world = self._world
@@ -77,25 +77,24 @@ class Recorder:
         """All of it; ``config`` is the effective one, a NamedTuple."""
         scenario, table = self._scenario, np.array(self._rows, dtype=np.float64).reshape(-1, 10)
         footprint = scenario.robot.footprint
-        goals = [(g.x, g.y, math.nan if g.heading is None else g.heading) for g in scenario.goals]
         frame = self._frame
         return Episode(
             grid=scenario.grid,
             robot=scenario.robot.name,
             radius=footprint.circumscribed,
             footprint=footprint.vertices,
-            goals=np.array(goals, dtype=np.float64).reshape(-1, 3),
+            goals=goal_table(scenario.goals),
             goal_tolerance=float(config.goal_tolerance),
             trajectory=Trajectory(table[:, 0], table[:, 1:4], table[:, 4:6]),
             commands=table[:, 6:8],
             clearance=table[:, 8],
             command_ms=table[:, 9],
             states=np.array(self._states, dtype=np.str_),
-            movers=np.array(self._movers).reshape(len(self._rows), -1, 2),
+            movers=_padded(self._movers, len(self._world.mover_radii)),
             mover_radii=np.array(self._world.mover_radii),
             obstacles=self._world.obstacles,
-            plans=tuple(self._plans),
-            events=tuple(self._events),
+            plans=tuple(self.plans),
+            events=tuple(self.events),
             outcome=outcome,
             reason=reason,
             contact=self._world.contact,
@@ -104,6 +103,20 @@ class Recorder:
             config=plain(config),
             scenario=described(scenario, seed),
         )
+
+
+def goal_table(goals: Sequence[Goal]) -> Floats:
+    """Goals as an Episode has them, (k, 3): x, y and heading, NaN for any."""
+    rows = [(g.x, g.y, math.nan if g.heading is None else g.heading) for g in goals]
+    return np.array(rows, dtype=np.float64).reshape(-1, 3)
+
+
+def _padded(movers: list[Floats], count: int) -> Floats:
+    """Positions (n, count, 2) of ticks (m, 2) each; NaN for movers who came later."""
+    padded = np.full((len(movers), count, 2), np.nan)
+    for row, places in zip(padded, movers, strict=True):
+        row[: len(places)] = places
+    return padded
 
 
 def plain(value: Any) -> Any:

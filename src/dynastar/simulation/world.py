@@ -2,6 +2,7 @@
 
 import math
 from collections import deque
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -43,14 +44,12 @@ class World:
         senses = np.random.SeedSequence(seed).spawn(2)
         self._scenario, self._robot = scenario, scenario.robot
         self._solids = Solids(grid, scenario.obstacles)
-        self._movers = Movers(scenario.movers)
+        self._set_movers(Movers(scenario.movers))
         self._crowd = (
             Crowd(scenario.crowd, grid, scenario.obstacles, scenario.robot.footprint, seed)
             if scenario.crowd
             else None
         )
-        crowd_radii = [pedestrian.radius for pedestrian in scenario.crowd]
-        self.mover_radii = np.concatenate([self._movers.radii, crowd_radii])
         self._lidar = LidarSimulator(
             scenario.robot.lidar,
             grid,
@@ -97,10 +96,32 @@ class World:
 
     def add_obstacle(self, ring: Floats) -> None:
         """Puts another polygon (k, 2), metres, into the true world; ScenarioError if it is none."""
-        self._solids.add(ring, f"obstacle {len(self.obstacles)}")
-        self._lidar.add(ring)
-        self.obstacles = (*self.obstacles, ring)
+        self._set_obstacles((*self.obstacles, ring))
         self._look(self.twist, thoroughly=True)
+
+    def change(self, scenario: Scenario) -> None:
+        """Takes obstacles, movers and the robot's limits of a scenario; all else goes on as it is.
+
+        Raises ScenarioError for what cannot be, and then changes nothing. A contact is forgotten.
+        """
+        movers = Movers(scenario.movers)
+        self._set_obstacles(scenario.obstacles)
+        self._set_movers(movers)
+        self._robot, self.contact, self.clearance = scenario.robot, "", math.inf
+        self._look(self.twist, thoroughly=True)
+
+    def _set_movers(self, movers: Movers) -> None:
+        crowd_radii = [pedestrian.radius for pedestrian in self._scenario.crowd]
+        self._movers, self.mover_radii = movers, np.concatenate([movers.radii, crowd_radii])
+
+    def _set_obstacles(self, rings: Sequence[Floats]) -> None:
+        self._solids.change(rings)
+        self._lidar.change(rings)
+        self.obstacles = tuple(rings)
+
+    def gaps(self, points: Floats) -> Floats:
+        """Metres (n,) from points (n, 2) to what stands; 0 inside of it, or off the map."""
+        return self._solids.gaps(points)
 
     def place(self, pose: Pose2D) -> None:
         """Puts the robot somewhere else; its speeds stay."""

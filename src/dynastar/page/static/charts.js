@@ -13,13 +13,16 @@ function sized(canvas) {
   return [context, width, height];
 }
 
-// series: [{ name, values, colour }] over times; the lines are drawn once and kept as an image.
+// series: [{ values, colour }] over times from begin to end. Lines that stay are drawn once and kept as an
+// image; those that change are drawn each time.
 class Chart {
-  constructor(canvas, times, series, end) {
-    Object.assign(this, { canvas, times, series, end });
+  constructor(canvas, times, series, { begin = 0, end = 1, changing = false }) {
+    Object.assign(this, { canvas, times, series, begin, end, changing });
     this.image = null;
     new ResizeObserver(() => { this.image = null; this.draw(this.now || 0); }).observe(canvas);
   }
+
+  x(time, width) { return width * (time - this.begin) / (this.end - this.begin); }
 
   lines(context, width, height) {
     let low = Infinity, high = -Infinity;
@@ -45,7 +48,7 @@ class Chart {
       let pen = false;
       for (let i = 0; i < values.length; i++) {
         if (!Number.isFinite(values[i])) { pen = false; continue; }
-        const x = width * this.times[i] / this.end;
+        const x = this.x(this.times[i], width);
         if (pen) context.lineTo(x, y(values[i]));
         else context.moveTo(x, y(values[i]));
         pen = true;
@@ -61,6 +64,10 @@ class Chart {
   draw(now) {
     this.now = now;
     const [context, width, height] = sized(this.canvas);
+    if (this.changing) {
+      this.lines(context, width, height);
+      return;
+    }
     if (!this.image) {
       this.lines(context, width, height);
       this.image = document.createElement("canvas");
@@ -73,7 +80,7 @@ class Chart {
       context.drawImage(this.image, 0, 0);
       context.restore();
     }
-    const x = width * now / this.end;
+    const x = this.x(now, width);
     context.strokeStyle = colours().ink;
     context.beginPath();
     context.moveTo(x, 0);

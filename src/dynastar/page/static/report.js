@@ -1,16 +1,5 @@
 // Replays episodes: decodes them, keeps one clock, answers the keyboard.
 
-const KINDS = { int8: Int8Array, uint8: Uint8Array, uint16: Uint16Array, int32: Int32Array, float32: Float32Array };
-const LAYERS = { explored: "explored cells", seen: "sensed obstacles", plans: "paths", driven: "driven",
-  candidates: "candidates", movers: "moving obstacles, truly", tracks: "tracked, and in 1 and 2 s",
-  follow: "follow the robot" };
-
-function unpacked({ kind, data }) {
-  const text = atob(data), bytes = new Uint8Array(text.length);
-  for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
-  return new KINDS[kind](bytes.buffer);
-}
-
 async function episodes() {
   const packed = unpacked({ kind: "uint8", data: document.getElementById("data").textContent.trim() });
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
@@ -28,10 +17,13 @@ function offsets(rows) {
   return ends;
 }
 
-// An episode that gives the frame of any time.
+// An episode that gives the frame of any time, as a Panel's source.
 class Replay {
   constructor(data) {
     this.data = data;
+    this.name = data.name;
+    this.about = `${data.robot}${data.preset ? `, preset ${data.preset}` : ""}: ${data.outcome}, ${data.reason}`;
+    this.refusals = data.refusals;
     for (const name of ["times", "poses", "twists", "commands", "clearance", "movers"]) this[name] = unpacked(data[name]);
     this.end = this.times[this.times.length - 1] || 0;
     this.state = words(data.states);
@@ -44,6 +36,8 @@ class Replay {
     this.trail = new Float32Array(2 * this.times.length);
     for (let i = 0; i < this.times.length; i++) this.trail.set([this.poses[3 * i], this.poses[3 * i + 1]], 2 * i);
     if (data.trace) this.readTrace(data.trace);
+    this.entries = data.events.map(([time, kind, detail]) => [time, `${kind}: ${detail}`])
+      .concat(this.plans.map((plan) => [plan.time, `path: ${plan.reason}`])).sort((a, b) => a[0] - b[0]);
     this.exploredOf = -1;
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
       this.scene.map = mapCells(grid, colours());
@@ -58,15 +52,23 @@ class Replay {
     this.trackEnds = offsets(unpacked(trace.trackRows));
     this.reason = words(trace.reasons);
     this.traced = this.candidateEnds.length - 1;
-    this.seenCells = this.cellsOf(trace.seenFrame);
+    this.seenCells = cellsOver(this.data.grid, trace.seenFrame);
     this.seenTo = 0;
     this.seenTick = -1;
   }
 
-  // Empty cells over the map in a frame whose cells may be smaller than the map's.
-  cellsOf(frame) {
-    const { rows, columns } = this.data.grid, factor = this.data.grid.frame[0] / frame[0];
-    return new Cells(Math.round(rows * factor), Math.round(columns * factor), frame);
+  plots() {
+    const column = (values, width, index) => values.filter((_, i) => i % width === index);
+    const plots = [
+      ["v, driven and commanded, m/s", [["old", column(this.commands, 2, 0)], ["driven", column(this.twists, 2, 0)]]],
+      ["omega, driven and commanded, rad/s", [["old", column(this.commands, 2, 1)], ["driven", column(this.twists, 2, 1)]]],
+      ["clearance, m", [["plan", this.clearance]]],
+    ];
+    if (this.terms) {
+      const named = this.data.termNames.map((name, i) => [TERM_SHADES[i], column(this.terms, 5, i), name]);
+      plots.push(["terms of Eq. 9 of the choice", named]);
+    }
+    return plots;
   }
 
   tickAt(time) {
@@ -105,9 +107,8 @@ class Replay {
   exploredAt(plan) {
     if (plan < 0 || !this.plans[plan].explored.length) return null;
     if (plan !== this.exploredOf) {
-      const cells = this.cellsOf(this.data.exploredFrame);
-      const runs = this.plans[plan].explored, colour = colours().explored;
-      for (let i = 0; i < runs.length; i += 3) cells.run(runs[i], runs[i + 1], runs[i + 2], colour);
+      const cells = cellsOver(this.data.grid, this.data.exploredFrame);
+      drawRuns(cells, this.plans[plan].explored, colours().explored);
       this.exploredOf = plan;
       this.exploredCells = cells;
     }
@@ -156,98 +157,6 @@ class Replay {
   }
 }
 
-function element(kind, attributes = {}, ...children) {
-  const made = document.createElement(kind);
-  for (const [name, value] of Object.entries(attributes)) {
-    if (name in made && name !== "list") made[name] = value;
-    else made.setAttribute(name, value);
-  }
-  made.append(...children);
-  return made;
-}
-
-const number = (value, digits, unit) => (Number.isFinite(value) ? `${value.toFixed(digits)} ${unit}` : "-");
-
-// Everything that is shown of one episode.
-class Panel {
-  constructor(replay, end, seek) {
-    this.replay = replay;
-    const { data } = replay;
-    this.map = element("canvas", { className: "map", role: "img", ariaLabel: `Map of ${data.name}` });
-    this.window = element("canvas", { className: "window", role: "img", ariaLabel: "Candidates by v and omega" });
-    this.words = element("div", { className: "words" });
-    this.numbers = element("dl", { className: "numbers" });
-    const hint = element("p", { className: "hint" });
-    this.log = element("ol", { className: "log", ariaLabel: "Events" });
-    const charts = element("div", { className: "charts" });
-    const preset = data.preset ? `, preset ${data.preset}` : "";
-    this.root = element("section", { className: "view" },
-      element("h1", {}, `${data.name} `, element("small", {}, `${data.robot}${preset}: ${data.outcome}, ${data.reason}`)),
-      element("div", { className: "parts" }, this.map,
-        element("div", { className: "side" }, this.words, this.numbers, this.window, hint)),
-      charts, this.log);
-    document.getElementById("views").append(this.root);
-    this.view = new View(this.map, boxOf(replay.scene.grid), () => this.draw(this.now || 0));
-    this.candidates = new WindowChart(this.window, hint, data.refusals);
-    this.charts = this.makeCharts(charts, end, seek);
-    this.entries = data.events.map(([time, kind, detail]) => [time, `${kind}: ${detail}`])
-      .concat(replay.plans.map((plan) => [plan.time, `path: ${plan.reason}`])).sort((a, b) => a[0] - b[0]);
-    this.items = this.entries.map(([time, text]) => {
-      const button = element("button", { type: "button" }, `${time.toFixed(1)} s  ${text}`);
-      button.addEventListener("click", () => seek(time));
-      this.log.append(element("li", {}, button));
-      return button;
-    });
-  }
-
-  makeCharts(place, end, seek) {
-    const { replay } = this, column = (values, width, index) => values.filter((_, i) => i % width === index);
-    const plots = [
-      ["v, driven and commanded, m/s", [["old", column(replay.commands, 2, 0)], ["driven", column(replay.twists, 2, 0)]]],
-      ["omega, driven and commanded, rad/s", [["old", column(replay.commands, 2, 1)], ["driven", column(replay.twists, 2, 1)]]],
-      ["clearance, m", [["plan", replay.clearance]]],
-    ];
-    if (replay.terms) {
-      const shades = ["plan", "occupied", "driven", "seen", "contact"];
-      const named = replay.data.termNames.map((name, i) => [shades[i], column(replay.terms, 5, i), name]);
-      plots.push([`terms of Eq. 9 of the choice`, named]);
-    }
-    return plots.map(([title, lines]) => {
-      const canvas = element("canvas", { className: "chart", role: "img", ariaLabel: title });
-      const caption = element("figcaption", {}, title);
-      for (const [colour, , name] of lines) {
-        if (name) caption.append(" ", element("span", { style: `color: var(--${colour})` }, name));
-      }
-      place.append(element("figure", {}, caption, canvas));
-      const to = (event) => { if (event.buttons) seek(end * event.offsetX / canvas.clientWidth); };
-      canvas.addEventListener("pointerdown", to);
-      canvas.addEventListener("pointermove", to);
-      return new Chart(canvas, replay.times, lines.map(([colour, values]) => ({ colour, values })), end);
-    });
-  }
-
-  draw(time) {
-    this.now = time;
-    const frame = this.replay.frame(time);
-    drawScene(this.view, this.replay.scene, frame, layers);
-    this.candidates.draw(frame);
-    for (const chart of this.charts || []) chart.draw(Math.min(time, this.replay.end));
-    this.words.replaceChildren(element("b", {}, frame.state), frame.reason);
-    const rows = [["v", number(frame.twist[0], 2, "m/s")], ["omega", number(frame.twist[1], 2, "rad/s")],
-      ["clearance", number(frame.clearance, 2, "m")], ["limited by", frame.limit || "-"], ["path", frame.planReason || "-"]];
-    this.numbers.replaceChildren(...rows.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));
-    let last = -1;
-    (this.entries || []).forEach(([at], i) => { if (at <= time + 1e-4) last = i; });
-    if (last !== this.last && this.items) {
-      this.items.forEach((item, i) => item.classList.toggle("now", i === last));
-      if (last >= 0) this.log.scrollTop = this.items[last].offsetTop - this.log.offsetTop - 40;
-      this.last = last;
-    }
-  }
-}
-
-const layers = {};
-
 async function start() {
   const replays = (await episodes()).map((data) => new Replay(data));
   const end = Math.max(...replays.map((one) => one.end), 0.1);
@@ -275,14 +184,10 @@ async function start() {
     if (now >= end) run(false);
     else requestAnimationFrame(step);
   };
-  for (const [name, title] of Object.entries(LAYERS)) {
-    layers[name] = name !== "follow";
-    const box = element("input", { type: "checkbox", checked: layers[name] });
-    box.addEventListener("change", () => { layers[name] = box.checked; show(); });
-    document.getElementById("layers").append(element("label", {}, box, ` ${title}`));
-  }
+  makeLayers(() => show());
   slider.max = end;
-  panels = replays.map((one) => new Panel(one, end, seek));
+  for (const one of replays) one.span = { begin: 0, end };
+  panels = replays.map((one) => new Panel(one, { seek }));
   slider.addEventListener("input", () => seek(Number(slider.value)));
   play.addEventListener("click", () => run(!running));
   document.addEventListener("keydown", (event) => {

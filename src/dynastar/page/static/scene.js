@@ -1,26 +1,33 @@
 // Drawing of one moment: a scene that stays, and a frame that passes. Metres, x to the right, y up.
 
+const KINDS = { int8: Int8Array, uint8: Uint8Array, uint16: Uint16Array, int32: Int32Array, float32: Float32Array };
+
+function unpacked({ kind, data }) {
+  const text = atob(data), bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
+  return new KINDS[kind](bytes.buffer);
+}
+
 function colours() {
   const style = getComputedStyle(document.documentElement);
   return new Proxy({}, { get: (_, name) => style.getPropertyValue(`--${name}`).trim() });
 }
 
-// A canvas with a part of the world on it, moved by dragging and zoomed by the wheel or two fingers.
+// A canvas with a part of the world on it, moved by dragging and zoomed by the wheel or two fingers. A
+// tool with begin, move and end (place, event) takes the drags of one finger or the left button instead.
 class View {
-  constructor(canvas, box, redraw) {
+  constructor(canvas, box, redraw, tool = null) {
     this.canvas = canvas;
     this.whole = box;
     this.redraw = redraw;
+    this.tool = tool;
+    this.using = null;
     this.fitted = true;
     this.pointers = new Map();
-    canvas.addEventListener("pointerdown", (event) => {
-      canvas.setPointerCapture(event.pointerId);
-      this.pointers.set(event.pointerId, [event.offsetX, event.offsetY]);
-    });
+    canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.drag(event));
-    for (const kind of ["pointerup", "pointercancel"]) {
-      canvas.addEventListener(kind, (event) => this.pointers.delete(event.pointerId));
-    }
+    canvas.addEventListener("pointerup", (event) => this.up(event, true));
+    canvas.addEventListener("pointercancel", (event) => this.up(event, false));
     canvas.addEventListener("wheel", (event) => {
       event.preventDefault();
       this.zoom(Math.exp(-0.0015 * event.deltaY), event.offsetX, event.offsetY);
@@ -53,9 +60,33 @@ class View {
     this.redraw();
   }
 
+  down(event) {
+    this.canvas.setPointerCapture(event.pointerId);
+    this.pointers.set(event.pointerId, [event.offsetX, event.offsetY]);
+    if (this.using !== null) {  // a second finger: both zoom
+      this.tool.cancel();
+      this.using = null;
+    } else if (this.tool && this.pointers.size === 1 && event.button === 0
+      && this.tool.begin(this.world(event.offsetX, event.offsetY), event)) {
+      this.using = event.pointerId;
+    }
+  }
+
+  up(event, done) {
+    this.pointers.delete(event.pointerId);
+    if (this.using !== event.pointerId) return;
+    this.using = null;
+    if (done) this.tool.end(this.world(event.offsetX, event.offsetY), event);
+    else this.tool.cancel();
+  }
+
   drag(event) {
     const before = this.pointers.get(event.pointerId);
     if (!before) return;
+    if (this.using === event.pointerId) {
+      this.tool.move(this.world(event.offsetX, event.offsetY), event);
+      return;
+    }
     const now = [event.offsetX, event.offsetY];
     const others = [...this.pointers.entries()].filter(([id]) => id !== event.pointerId);
     if (others.length === 1) {

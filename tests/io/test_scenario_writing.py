@@ -1,0 +1,87 @@
+"""Scenarios that are written load back the same."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dynastar import io
+from dynastar.errors import ScenarioError
+from dynastar.geometry import Goal
+from dynastar.grid import GridFrame, OccupancyGrid
+from dynastar.io.examples import example_scenarios
+from dynastar.robot import Footprint, Robot
+from dynastar.simulation import Fault, Mover, Noise, Pedestrian
+from dynastar.simulation.movers import Movers
+
+SCENES = example_scenarios()
+
+
+@pytest.mark.parametrize("name", sorted(SCENES.keys() - {"depot", "willow"}))  # these need data
+def test_each_example_comes_back(name, tmp_path):
+    first = io.load_scenario(SCENES[name])
+    second = io.load_scenario(io.save_scenario(first, tmp_path))
+    same(first, second)
+
+
+def same(first, second):
+    for key in ("name", "noise", "latency", "goal_tolerance", "heading_tolerance", "seed"):
+        assert getattr(first, key) == getattr(second, key), key
+    for key in ("time_limit", "unknown", "preset", "navigator", "start", "goals"):
+        assert getattr(first, key) == getattr(second, key), key
+    assert first.robot.limits == second.robot.limits
+    assert first.robot.lidar == second.robot.lidar
+    assert np.array_equal(first.robot.footprint.vertices, second.robot.footprint.vertices)
+    for a, b in ((first.grid, second.grid), (first.world, second.world)):
+        assert (a is None) == (b is None)
+        if a is not None:
+            assert np.array_equal(a.values, b.values)
+            assert a.frame == pytest.approx(b.frame)
+            assert (a.keepout is None) == (b.keepout is None)
+            assert a.keepout is None or np.array_equal(a.keepout, b.keepout)
+    if first.grid.speed_limit is not None:
+        step = 0.006 * first.robot.limits.v_max
+        assert np.allclose(first.grid.speed_limit, second.grid.speed_limit, atol=step)
+    assert all(map(np.array_equal, first.obstacles, second.obstacles))
+    assert len(first.obstacles) == len(second.obstacles)
+    for time in np.linspace(0.0, 60.0, 61):
+        places = (Movers(one.movers).at(time) for one in (first, second))
+        assert np.array_equal(*places, equal_nan=True)
+
+
+def test_what_python_alone_can_make_comes_back(tmp_path):
+    made = io.load_scenario(SCENES["u_trap"])
+    values = np.full((30, 20), -1, np.int8)
+    values[1:-1, 1:-1] = 0
+    robot = replace(made.robot, name="of my own", footprint=Footprint.polygon(
+        [(0.3, 0.2), (-0.2, 0.2), (-0.2, -0.2), (0.3, -0.2)]))  # fmt: skip
+    scenario = replace(
+        made,
+        name='a "quoted" \\ name, ä',
+        grid=OccupancyGrid(values, GridFrame(0.25, -1.0, 2.0, 0.4)),
+        world=OccupancyGrid(np.zeros((30, 20), np.int8), GridFrame(0.25, -1.0, 2.0, 0.4)),
+        robot=robot,
+        start=(-1.0, 4.0, 7.5 * math.pi),
+        goals=(Goal(0.0, 5.0, None), Goal(-1.0, 5.0, -0.5)),
+        obstacles=(np.array([[1.0, 6.0], [1.2, 6.0], [1.1, 6.3]]),),
+        movers=(Mover(0.2, np.array([0.0, 2.0]), np.array([[0.0, 3.0], [0.0, 4.0]]), "loop"),),
+        noise=Noise(0.01, 0.02, 0.03),
+        navigator={"dwa": {"weights": {"vel": 0.4}}, "reverse": False},
+    )
+    found = io.load_scenario(io.save_scenario(scenario, tmp_path / "new"))
+    same(replace(scenario, start=(-1.0, 4.0, found.start[2])), found)
+    assert math.remainder(found.start[2] - 7.5 * math.pi, math.tau) == pytest.approx(0.0, abs=1e-9)
+    assert isinstance(robot, Robot)
+
+
+def test_what_no_file_can_hold_is_refused_and_nothing_is_written(tmp_path):
+    made = io.load_scenario(SCENES["u_trap"])
+    somebody = Pedestrian(0.2, 1.0, (3.0, 3.0), np.array([[3.0, 3.0], [5.0, 3.0]]))
+    for scenario in (
+        replace(made, crowd=(somebody,)),
+        replace(made, faults=(Fault("scans_lost", 1.0),)),
+    ):
+        with pytest.raises(ScenarioError, match="cannot have"):
+            io.save_scenario(scenario, tmp_path)
+    assert list(tmp_path.iterdir()) == []
