@@ -1,6 +1,7 @@
-"""What all tests share: where the public data sets lie."""
+"""What all tests share: where the public data sets lie, and a real browser."""
 
 import os
+import shutil
 from pathlib import Path
 
 import pytest
@@ -28,3 +29,29 @@ def data_dir() -> Path:
             f"the public data sets are not in {folder}: set DYNASTAR_DATA to have them read"
         )
     return folder.resolve()
+
+
+@pytest.fixture(scope="session")
+def chromium():
+    """Debian's chromium, driven by playwright; skipped where it is not there."""
+    api = pytest.importorskip("playwright.sync_api")
+    binary = shutil.which("chromium") or shutil.which("chromium-browser")
+    if binary is None:
+        pytest.skip("no chromium here: apt-get install chromium")
+    with api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=binary, args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def page(chromium):
+    """A page whose errors fail the test."""
+    # The content security policy would keep playwright's wait_for_function from evaluating words.
+    made = chromium.new_page(viewport={"width": 1280, "height": 900}, bypass_csp=True)
+    errors = []
+    made.on("pageerror", lambda error: errors.append(str(error)))
+    made.on("console", lambda said: errors.append(said.text) if said.type == "error" else None)
+    yield made
+    made.close()
+    assert errors == []

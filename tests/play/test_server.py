@@ -2,7 +2,6 @@
 
 import io as streams
 import json
-import os
 import subprocess
 import sys
 import threading
@@ -10,40 +9,17 @@ import time
 import urllib.error
 import urllib.request
 import zipfile
-from pathlib import Path
 
 import pytest
 
 from dynastar import io
+from playing import ended, started
 
 websockets = pytest.importorskip("websockets.sync.client")
 pytest.importorskip("starlette")
 pytest.importorskip("uvicorn")
 
 from websockets.exceptions import ConnectionClosed, InvalidStatus  # noqa: E402
-
-ROOT = Path(__file__).parents[2]
-
-
-def started(*options, scene="u_trap"):
-    """``dynastar play`` on a free port, and the address that it prints."""
-    process = subprocess.Popen(
-        [sys.executable, "-m", "dynastar", "play", scene, "--port", "0", *options],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env={**os.environ, "PYTHONUNBUFFERED": "1"},
-    )
-    line = process.stdout.readline().strip()
-    assert line.startswith("http://"), process.stderr.read()
-    return process, line
-
-
-def ended(process):
-    process.send_signal(2)
-    _, errors = process.communicate(timeout=20)
-    assert process.returncode == 0, errors
-    assert "Traceback" not in errors
 
 
 @pytest.fixture(scope="module")
@@ -168,7 +144,12 @@ def test_elsewhere_a_token_is_asked_for():
 def test_a_thousand_malformed_messages_leave_it_running(address):
     watcher = Page(address)
     junk = ["", "{", "[]", "null", '{"type": 1}', '{"type": "goals", "goals": 3}', "[" * 9000]
-    junk += ['{"type": "stroke", "points": [[1e999, 0]]}', "\x00", '{"type": "\\ud800"}', "9" * 9000]
+    junk += [
+        '{"type": "stroke", "points": [[1e999, 0]]}',
+        "\x00",
+        '{"type": "\\ud800"}',
+        "9" * 9000,
+    ]
     sent = 0
     while sent < 1000:
         page = Page(address)

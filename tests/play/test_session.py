@@ -60,6 +60,17 @@ def arrived(scene):
     return scene.navigator.status.state == "arrived"
 
 
+def test_a_goal_is_added_to_those_that_there_are(field):
+    ask(field, type="goals", goals=[[4.0, 2.0, None]])
+    ask(field, type="goals", goals=[[4.0, 4.0, None]], more=True)
+    goals = [tuple(goal) for goal in field.navigator.mission.goals]
+    assert goals == [(4.0, 2.0, None), (4.0, 4.0, None)]
+    for _ in range(18):
+        ask(field, type="goals", goals=[[4.0, 4.0, None]], more=True)
+    with pytest.raises(InputError, match="at most 20"):
+        ask(field, type="goals", goals=[[4.0, 4.0, None]], more=True)
+
+
 def test_goals_that_cannot_be_are_refused_and_change_nothing(field):
     for x, y in ((0.1, 0.1), (50.0, 2.0)):
         with pytest.raises(InputError, match=r"wall|map"):

@@ -19,9 +19,10 @@ Number = Annotated[int, Field("a mover, from 0", "", 0, 10**6)]
 
 
 class Goals(NamedTuple):
-    """Drive there, in order; no goal: stop."""
+    """Drive there, in order; after the goals that there are if ``more``; no goal: stop."""
 
     goals: tuple[tuple[Metres, Metres, Heading], ...]
+    more: bool = False
 
 
 class Stroke(NamedTuple):

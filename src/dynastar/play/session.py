@@ -156,6 +156,10 @@ class Session:
         for goal in goals:
             if grid.occupied[grid.world_to_cell(goal.x, goal.y)]:
                 raise InputError(f"({goal.x:.2f}, {goal.y:.2f}) is in a wall of the map")
+        if message.more:
+            goals = [*self.navigator.mission.goals, *goals]
+        if len(goals) > ask.MOST_GOALS:
+            raise InputError(f"{len(goals)} goals: at most {ask.MOST_GOALS} are taken")
         self._aim(goals)
 
     def _stroke(self, message: ask.Stroke) -> None:

@@ -26,7 +26,7 @@ SLIDERS: Mapping[str, Slider] = {
     "dwa.weights.simi": Slider(0.0, 2.0, 0.05, "sigma, similarity to the path"),
     "dwa.weights.risk": Slider(0.0, 50.0, 1.0, "rho, risk"),
     "dwa.horizon": Slider(0.5, 8.0, 0.5, "horizon, s"),
-    "dwa.v_samples": Slider(2, 20, 1, "speeds sampled"),
+    "dwa.v_samples": Slider(2, 25, 1, "speeds sampled"),
     "dwa.omega_samples": Slider(3, 41, 2, "turning rates sampled"),
 }
 LIMITS: Mapping[str, str] = {  # as shares of what the robot has

@@ -207,8 +207,7 @@ class Hand {
   }
 
   goal([x, y], heading, more) {
-    const before = more && this.page.live.last ? this.page.live.last.goals : [];
-    this.page.send("goals", { goals: [...before, [x, y, heading]] });
+    this.page.send("goals", { goals: [[x, y, heading]], more });
   }
 
   walk(dragged) {
