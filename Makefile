@@ -10,7 +10,7 @@ FIND_PYTHON = for python in python3.11 python3 python3.12 python3.13 python; do 
 	$$python -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2>/dev/null \
 	&& echo $$python && break; done
 
-.PHONY: help setup check test test-ros test-all dist docs demo suites paper bench clean
+.PHONY: help setup check test test-ros test-all dist docs pictures demo suites paper bench clean
 
 help:
 	@echo "make setup   make .venv and install dynastar with its tools into it"
@@ -20,6 +20,7 @@ help:
 	@echo "make test-all  the same with each Python of $(PYTHONS) that is found, installed from the wheel"
 	@echo "make check   ruff, mypy, import-linter"
 	@echo "make docs    the documentation as a site of HTML, in out/docs"
+	@echo "make pictures  the pictures of README and playground anew (needs chromium)"
 	@echo "make dist    wheel and source distribution in dist"
 	@echo "make suites  the suites movingai (needs DYNASTAR_DATA) and paper; JSON in out/suites"
 	@echo "make paper   the paper's tables and figures, and those of docs/paper.md; two hours"
@@ -62,6 +63,9 @@ $(ROS)/.installed: pyproject.toml tests/ros/interfaces/build.sh
 docs: setup
 	$(BIN)/python -m sphinx -q -W --keep-going -b html docs out/docs
 	@echo "open out/docs/index.html"
+
+pictures: setup
+	$(BIN)/python docs/make_pictures.py
 
 dist: setup
 	rm -rf dist

@@ -20,12 +20,12 @@ PROGRAMS = sorted(EXAMPLES.glob("[0-9]*.py"))
 LANE_CLEARANCE = 0.4  # m, from the middle of a walker's lane to anything
 
 
-def arrives(scenario: Scenario) -> None:
+def arrives(scenario: Scenario, replans: int = 1) -> None:
     result = measure(run(scenario))
     assert (result.outcome, result.contacts_moving, result.contacts_resting) == (
         *("arrived", 0, 0),
     ), result.reason
-    assert result.replans >= 1
+    assert result.replans >= replans
 
 
 def check_lanes(scenario: Scenario) -> None:
@@ -126,3 +126,22 @@ def test_the_hall_is_what_its_script_draws() -> None:
         stored = load_map(EXAMPLES / "features" / f"{name}.yaml")
         assert np.array_equal(grid.values, stored.values)
         assert grid.frame == stored.frame
+
+
+PLAY = sorted((EXAMPLES / "play").glob("*.toml"))
+
+
+def test_the_field_is_what_its_script_draws(monkeypatch: pytest.MonkeyPatch) -> None:
+    written: list[str] = []
+    monkeypatch.setattr(Path, "write_text", lambda self, text: written.append(text))
+    runpy.run_path(str(EXAMPLES / "play" / "draw_field.py"))["main"]()
+    monkeypatch.undo()
+    assert written == [(EXAMPLES / "play" / "field.toml").read_text()]
+
+
+@pytest.mark.parametrize("file", PLAY, ids=lambda path: path.stem)
+def test_the_playgrounds_scenes_can_be_driven(file: Path) -> None:
+    scenario = load_scenario(file)
+    if scenario.obstacles and scenario.movers:
+        check_lanes(scenario)
+    arrives(scenario, replans=0)

@@ -1,0 +1,62 @@
+"""Remakes the pictures of the README and of docs/playground.md; needs chromium and playwright.
+
+    make pictures
+
+The replay and the animation are of ``dynastar demo``; the playground's picture is of the scene crowd.
+"""
+
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from playwright.sync_api import Page, sync_playwright
+
+MEDIA = Path(__file__).parent / "media"
+REPLAY_AT = 27.5  # s, before the walker of the open-plan office
+PLAY_AT = 9.0  # s
+
+
+def main() -> None:
+    """Runs the demo, and takes both pages' pictures."""
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
+        demo = Path(folder, "demo")
+        subprocess.run([sys.executable, "-m", "dynastar", "demo", "--out", demo], check=True)
+        shutil.copy(demo / "animation.gif", MEDIA / "office.gif")
+        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
+        page = browser.new_page(viewport={"width": 1200, "height": 780})
+        replay(page, demo / "report.html")
+        playground(page)
+        browser.close()
+
+
+def replay(page: Page, report: Path) -> None:
+    """The demo's replay, at a moment that has something to see."""
+    page.goto(report.as_uri())
+    page.wait_for_function("window.dynastar")
+    page.evaluate(f"dynastar.seek({REPLAY_AT})")
+    page.locator("label", has_text="follow the robot").click()
+    page.evaluate("scrollTo(0, 0)")
+    page.wait_for_timeout(500)
+    page.screenshot(path=MEDIA / "replay.png")
+
+
+def playground(page: Page) -> None:
+    """The crowd's hall, live."""
+    words = [sys.executable, "-m", "dynastar", "play", "crowd", "--port", "0"]
+    server = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
+    try:
+        assert server.stdout is not None
+        page.goto(server.stdout.readline().strip())
+        page.wait_for_timeout(1000.0 * PLAY_AT)
+        page.screenshot(path=MEDIA / "play.png")
+    finally:
+        server.send_signal(signal.SIGINT)
+        server.wait(20.0)
+
+
+if __name__ == "__main__":
+    main()
