@@ -39,3 +39,14 @@ def test_a_survey_chooses_the_same_and_scores_all_that_do_not_touch(search):
         assert window.choose(pose, twist, scene).command == choice.command
         assert not math.isnan(survey.score.max())
     assert more > 0 or search == "arcs"
+
+
+def test_a_complete_window_scores_all_in_its_choice():
+    window = DynamicWindow(ROUND, DwaConfig(), 0.1)
+    scene, pose = scene_of(boxed((3.5, 2.5, 3.7, 5.5)), radius=0.3), Pose2D(2.0, 4.0, 0.3)
+    survey = window.survey(pose, Twist(0.3, 0.1), scene)
+    assert not window.complete
+    window.complete = True
+    choice = window.choose(pose, Twist(0.3, 0.1), scene)
+    assert np.array_equal(choice.score, survey.score)
+    assert choice.command == survey.command

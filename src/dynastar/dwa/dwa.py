@@ -131,7 +131,7 @@ class DynamicWindow:
             np.zeros(n, np.int64),
             np.empty(n),
         )
-        self._bounded = True
+        self.complete = False  # whether ``choose`` scores all, as ``survey`` does
         alpha, beta, gamma, sigma, rho = map(float, config.weights)
         weights = alpha, beta, gamma, sigma, rho
         by_bearing = config.progress == "bearing"
@@ -159,11 +159,11 @@ class DynamicWindow:
 
     def survey(self, pose: Pose2D, twist: Twist, scene: Scene) -> Choice:
         """As ``choose``, with the scores of all admissible samples, also of those that cannot win."""
-        self._bounded = False
+        before, self.complete = self.complete, True
         try:
             return self.choose(pose, twist, scene)
         finally:
-            self._bounded = True
+            self.complete = before
 
     def _search(self, pose: Pose2D, twist: Twist, scene: Scene, n: int) -> Choice:
         """The best of the ``n`` samples in the buffers."""
@@ -172,7 +172,7 @@ class DynamicWindow:
         if self.config.search == "arcs":
             best = search_arcs(scene, self._rules, self._arcs, state, n, self._buffers)
         else:
-            best = search(scene, self._rules, state, n, self._buffers, self._bounded)
+            best = search(scene, self._rules, state, n, self._buffers, not self.complete)
             n += 2
         refused = refused[:n].copy()
         counts = np.bincount(refused, minlength=max(REFUSALS) + 1)

@@ -46,7 +46,7 @@ def refusal(scene, rules, state, command):
     return rests_in_time(scene, body, limits, state, command, period)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def search(scene, rules, state, n, buffers, bounded):
     """Scores the admissible of ``n`` samples by Eq. 9 and returns the best, or -1.
 

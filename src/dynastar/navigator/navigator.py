@@ -111,7 +111,9 @@ class Navigator:
 
         For pictures: it takes longer than ``command``, and changes nothing. Call it before the next.
         """
-        return None if self._asked is None else self.window.survey(*self._asked)
+        if self._asked is None or self.window.complete:
+            return self._choice
+        return self.window.survey(*self._asked)
 
     def retune(self, dwa: DwaConfig) -> None:
         """Other settings of the dynamic window from now on; path, goals and what was seen stay."""

@@ -72,6 +72,7 @@ class Session:
         """Drives to goals with another navigator, and begins another recording."""
         scenario = self.scenery.scenario
         self.navigator = Navigator(scenario.grid, scenario.robot, config)
+        self.navigator.window.complete = True  # all scores are shown
         self._aim(goals)
         self._record()
 
@@ -184,6 +185,7 @@ class Session:
         )
         if scenario.preset == before.preset and scenario.robot is before.robot:
             self.navigator.retune(config.dwa)
+            self.navigator.window.complete = True
             self.journal.say("settings", **self._settings())
         else:
             self._drive(config, goals)

@@ -43,12 +43,16 @@ def draw_map(grid: OccupancyGrid, axes: Axes, view: View | None = None) -> list[
 
 
 def draw_plan(
-    grid: OccupancyGrid, plan: "Plan", path: str | Path, width: float = 9.0, dpi: int = 160
-) -> None:
+    grid: OccupancyGrid,
+    plan: "Plan",
+    path: str | Path | None = None,
+    width: float = 9.0,
+    dpi: int = 160,
+) -> Figure:
     """Draws a plan on its map: explored cells (if recorded), grid path, smoothed path, S and G.
 
-    ``width`` is in inches; the suffix of ``path`` (.png, .svg, .pdf) says the format. Raises
-    InputError for another suffix.
+    ``width`` is in inches; the suffix of ``path`` (.png, .svg, .pdf), if there is one, says the format.
+    Raises InputError for another suffix.
     """
     points = plan.path.points
     view = mission_view(grid, [points, plan.grid_path.points])
@@ -72,21 +76,21 @@ def draw_plan(
     detail = f"{plan.path.length:.2f} m · {turns} · {plan.expanded} cells expanded"
     words = (f"Path planned by {plan.planner}", f"{detail} · {plan.time_ms:.1f} ms")
     _lay_out(figure, axes, view, width, words, entries)
-    save(figure, path, dpi)
+    return _saved(figure, path, dpi)
 
 
 def draw_world(
     grid: OccupancyGrid,
-    path: str | Path,
+    path: str | Path | None,
     name: str,
     scenario: "Scenario | None" = None,
     width: float = 9.0,
     dpi: int = 160,
-) -> None:
+) -> Figure:
     """Draws a map under a ``name``, and what a ``scenario`` puts into it: nothing is driven.
 
-    ``width`` is in inches; the suffix of ``path`` (.png, .svg, .pdf) says the format. Raises
-    InputError for another suffix.
+    ``width`` is in inches; the suffix of ``path`` (.png, .svg, .pdf), if there is one, says the format.
+    Raises InputError for another suffix.
     """
     view = known_view(grid)
     figure, axes = _sheet()
@@ -100,7 +104,7 @@ def draw_world(
             layers.mark(axes, np.array(end), np.array([0.0, 1.0]), numbered if number else "S")
     size = f"{grid.columns} x {grid.rows} cells of {grid.resolution:g} m"
     _lay_out(figure, axes, view, width, (name, f"{size} · {grid.extent()}"), entries)
-    save(figure, path, dpi)
+    return _saved(figure, path, dpi)
 
 
 def draw_episode(
@@ -131,6 +135,10 @@ def draw_episode(
     entries += layers.show_contact(axes, episode)
     words = (f"{scene.name_of(episode)}: {scene.outcome_words(metrics)}", _detail(metrics))
     _lay_out(figure, axes, view, width, words, entries, driven)
+    return _saved(figure, path, dpi)
+
+
+def _saved(figure: Figure, path: str | Path | None, dpi: int) -> Figure:
     if path is not None:
         save(figure, path, dpi)
     return figure
