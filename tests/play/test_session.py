@@ -211,6 +211,14 @@ def test_a_weight_keeps_what_was_seen_and_a_preset_the_goals(field):
     assert field.scenery.world.pose[:2] == pytest.approx((8.0, 2.0), abs=0.3)
 
 
+def test_each_preset_drives_and_shows_its_candidates(field):
+    for preset in ("printed", "paper", "default"):
+        ask(field, type="preset", preset=preset)
+        drive(field, 1.0)
+        assert len(field.navigator.survey().samples) > 50
+        assert told(field)[0]["preset"] == preset
+
+
 @pytest.mark.parametrize(
     ("name", "value", "says"),
     [("dwa.weights.val", 1.0, "did you mean"), ("limits.v_max", 50.0, "legal is"),

@@ -181,3 +181,54 @@ def test_senses_err_within_their_bounds_and_by_their_seed():
     np.testing.assert_array_equal(world.scan().ranges, same.scan().ranges)
     with pytest.raises(ScenarioError, match="seed is -1"):
         World(where, START, -1)
+
+
+BOX = np.array([[12.0, 9.5], [13.0, 9.5], [13.0, 10.5], [12.0, 10.5]])
+
+
+def test_a_changed_world_is_one_that_was_made_so():
+    walker = Mover(0.3, np.array([0.0, 10.0]), np.array([[11.0, 12.0], [11.0, 8.0]]))
+    other = scenario(QUICK, obstacles=(BOX,), movers=(walker,), noise=Noise(0.05))
+    made, changed = World(other, START, 3), World(scenario(QUICK, noise=Noise(0.05)), START, 3)
+    for world in (made, changed):
+        driven(world, (0.3, 0.1), 1.0)
+    changed.change(other)
+    assert changed.movers == pytest.approx(made.movers)
+    assert changed.obstacles == made.obstacles
+    assert np.array_equal(changed.scan().ranges, made.scan().ranges)
+    while not made.contact:
+        for world in (made, changed):
+            world.step(Twist(0.3, 0.0), 0.1)
+    assert (changed.time, changed.contact) == (made.time, made.contact)
+    assert changed.clearance == made.clearance == 0.0
+
+
+def test_a_change_takes_limits_and_forgets_the_contact():
+    world = World(scenario(QUICK, obstacles=(BOX,)), START)
+    while not world.contact:
+        world.step(Twist(1.0, 0.0), 0.1)
+    slow = replace(QUICK, limits=QUICK.limits._replace(v_max=0.2))
+    world.change(scenario(slow))
+    assert world.contact == ""
+    assert world.clearance > 1.0
+    driven(world, (1.0, 0.0), 1.0)
+    assert world.twist.v == pytest.approx(0.2)
+
+
+def test_a_change_that_cannot_be_changes_nothing():
+    world = World(scenario(QUICK, obstacles=(BOX,)), START)
+    knot = BOX[[0, 2, 1, 3]]
+    late = Mover(0.3, np.array([1.0, 0.0]), np.zeros((2, 2)))
+    for wrong in (scenario(QUICK, obstacles=(knot,)), scenario(QUICK, movers=(late,))):
+        before = world.scan().ranges
+        with pytest.raises(ScenarioError):
+            world.change(wrong)
+        assert world.obstacles == (BOX,) or np.array_equal(world.obstacles[0], BOX)
+        assert np.array_equal(world.scan().ranges, before)
+        assert len(world.movers) == 0
+
+
+def test_gaps_are_distances_to_what_stands():
+    world = World(scenario(QUICK, obstacles=(BOX,)), START)
+    points = np.array([[11.0, 10.0], [12.5, 10.0], [-1.0, 5.0], [0.4, 10.0]])
+    assert world.gaps(points) == pytest.approx([1.0, 0.0, 0.0, 0.4])
