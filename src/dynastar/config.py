@@ -60,9 +60,10 @@ def shown(value: Any) -> str:
 def nearest(name: str, legal: Iterable[str]) -> str:
     """`` (did you mean 'x'?)`` for the legal name nearest to ``name``, or the list of them."""
     names = list(legal)
-    close = difflib.get_close_matches(name[:80], names, n=1, cutoff=0.5)
-    if close:
-        return f" (did you mean '{close[0]}'?)"
+    close = difflib.get_close_matches(name[:80], names, n=3, cutoff=0.5)
+    if close:  # letters that have changed places are the likeliest slip
+        likeliest = max(close, key=lambda one: sorted(one) == sorted(name))
+        return f" (did you mean '{likeliest}'?)"
     return f" (legal: {', '.join(sorted(names))})" if names else ""
 
 

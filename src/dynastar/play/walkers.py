@@ -16,6 +16,7 @@ Gaps = Callable[[Floats], Floats]  # metres from points (n, 2) to what stands
 RADIUS = 0.25  # m, of a walker who is put in
 FAR = 30.0  # m that a walker goes at most before they turn back
 STEP = 0.05  # m between the places at which a walker's way is checked
+SLOWEST = 0.01  # m/s
 SHORT = 0.2  # m of way under which a walker stands
 JUMP = 1e-6  # s before a jump at which a mover is where it jumps from
 
@@ -23,11 +24,11 @@ JUMP = 1e-6  # s before a jump at which a mover is where it jumps from
 def walker(place: Floats, velocity: Floats, radius: float, now: float, gaps: Gaps) -> Mover:
     """A mover at ``place`` (2,) m who walks with ``velocity`` (2,) m/s as far as there is room.
 
-    They turn back there, walk as far to the other side, and so on. Without room, or with a velocity of
-    0, they stand.
+    They turn back there, walk as far to the other side, and so on. Without room, or slower than
+    ``SLOWEST``, they stand.
     """
     speed = math.hypot(*velocity)
-    if speed > 0.0:
+    if speed >= SLOWEST:
         onward, back = (_free_way(place, side * velocity / speed, radius, gaps) for side in (1, -1))
         if onward + back >= SHORT:
             ends = [place + onward * velocity / speed, place - back * velocity / speed]
