@@ -2,6 +2,7 @@
 
 import io as streams
 import json
+import socket
 import subprocess
 import sys
 import threading
@@ -130,7 +131,8 @@ def test_elsewhere_a_token_is_asked_for():
     process, line = started("--host", "0.0.0.0")
     try:
         port = line.split("/?")[0].rpartition(":")[2]
-        local = line.replace("0.0.0.0", "127.0.0.1")
+        assert line.startswith(f"http://{socket.gethostname()}:")
+        local = line.replace(socket.gethostname(), "127.0.0.1", 1)
         assert status_of(local)[0] == 200
         assert status_of(f"http://127.0.0.1:{port}")[0] == 403
         assert status_of(local + "x")[0] == 403
