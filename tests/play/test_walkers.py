@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from dynastar.geometry import Pose2D
@@ -64,6 +64,7 @@ def test_gone_is_nowhere():
     st.floats(0.0, 40.0),
     st.integers(0, 1000),
 )
+@example([0.1], 0.0, "loop", 1.0, 0)  # now is at a jump, up to rounding
 def test_a_mover_goes_on_from_now_as_it_would_have(steps, begin, after, now, seed):
     times = begin + np.cumsum([0.0, *steps])
     points = np.random.default_rng(seed).uniform(-5.0, 5.0, (len(times), 2))
