@@ -41,7 +41,7 @@ MOST_PAGES = 16  # connected at once
 MOST_CONNECTIONS = 64
 PATIENCE = 20.0  # s for a page to take what it is sent
 POLICY, BUSY = 1008, 1013  # codes of a WebSocket's close
-EVERYWHERE = ("", "0.0.0.0", "::")  # hosts that stand for all addresses of this machine
+EVERYWHERE = ("0.0.0.0", "::")  # hosts that stand for all addresses of this machine
 
 
 class Playground:
@@ -236,7 +236,8 @@ def serve(session: Session, host: str, port: int, ready: Callable[[str], None]) 
     """
     listening = _listen(host, port)
     gate = Gate(host, listening.getsockname()[1])
-    shown = socket.gethostname() if host in EVERYWHERE else f"[{host}]" if ":" in host else host
+    name = socket.gethostname() if host in EVERYWHERE else host
+    shown = f"[{name}]" if ":" in name else name
     query = f"/?token={gate.token}" if gate.token else "/"
     config = uvicorn.Config(
         Playground(session, gate).app,

@@ -18,9 +18,7 @@ FAR = 30.0  # m that a walker goes at most before they turn back
 STEP = 0.05  # m between the places at which a walker's way is checked
 SLOWEST = 0.01  # m/s
 SHORT = 0.2  # m of way under which a walker stands
-JUMP = (
-    1e-6  # s before a jump at which a mover is where it jumps from; a jump as near as that is over
-)
+JUMP = 1e-6  # s within which rounding may put a time on either side of a jump
 
 
 def walker(place: Floats, velocity: Floats, radius: float, now: float, gaps: Gaps) -> Mover:
@@ -66,6 +64,7 @@ def from_now(mover: Mover, now: float, rest: float) -> Mover | None:
         )
         times = (times + span * rounds[:, None]).ravel()
         points = np.tile(points, (len(rounds), 1))
+    # A jump at ``now`` is over, on whichever side rounding puts it.
     later = (times > now + JUMP) & (times < now + rest)
     times = np.concatenate([[now], times[later], [now + rest]])
     points = np.vstack([movers.at(now + JUMP), points[later], movers.at(now + rest)])
