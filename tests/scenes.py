@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from dynastar.clearance import lower_bounds
-from dynastar.dwa import CostToGo, DistanceField, Scene
+from dynastar.clearance import DistanceField, lower_bounds
+from dynastar.dwa import CostToGo, Scene
 from dynastar.dwa.cost_to_go import descend
 from dynastar.dwa.marching import extend, march, queue_for
 from dynastar.dwa.scene import AT_REST
@@ -63,7 +63,7 @@ def scene_of(closed, goal=(7.0, 4.0), movers=(), radius=0.3, margin=0.05, hidden
              ahead=0.0, last=AT_REST, v_cap=9.0, path=None, sigma=0.0, target=(7.0, 4.0)):  # fmt: skip
     """A scene in which all that is closed is occupied, too."""
     field = field_of(closed)
-    people = predict(movers, PredictionConfig(), ahead, STEP, HORIZON)
+    people = predict(movers, PredictionConfig(), (ahead, STEP, HORIZON))
     to_go = cost_to_go(closed, goal, radius + margin)
     return Scene(
         field, field, to_go, people, hidden, margin, margin, ahead, last, v_cap,

@@ -88,7 +88,7 @@ def test_a_line_that_was_followed_is_favoured_once():
 
 def test_a_mover_costs_where_and_when_it_is_met():
     """It crosses ahead; the robot is there when it is at (3.05, 2), not when it was further down."""
-    people = predict([MovingObstacle(3.05, 0.5, 0.0, 0.5, 0.3)], PredictionConfig(), 0.0, 0.1, 40)
+    people = predict([MovingObstacle(3.05, 0.5, 0.0, 0.5, 0.3)], PredictionConfig(), (0.0, 0.1, 40))
     cost = np.ones((40, 60))
     c.add_moving(cost, FRAME, people, (0.0, 0.1), (0.05, 2.0), 0.3, 1.0)
     discount = math.exp(-3.0 / people.memory)
@@ -97,7 +97,7 @@ def test_a_mover_costs_where_and_when_it_is_met():
     assert cost[20, 10] == 1.0  # before it comes
     assert cost.max() <= 1.0 + c.MEETING_COST + 1e-9
     nobody = np.ones((40, 60))
-    alone = predict([], PredictionConfig(), 0.0, 0.1, 40)
+    alone = predict([], PredictionConfig(), (0.0, 0.1, 40))
     c.add_moving(nobody, FRAME, alone, (0.0, 0.1), (0.05, 2.0), 0.3, 1.0)
     assert (nobody == 1.0).all()
 
@@ -110,7 +110,7 @@ def test_every_cell_costs_what_meeting_everybody_there_on_arrival_does(seed):
         MovingObstacle(*random.uniform(-1.0, 4.0, 2), *random.normal(0.0, 0.8, 2), 0.25)
         for _ in range(4)
     ]
-    people = predict(movers, PredictionConfig(), 0.05, 0.1, 30)
+    people = predict(movers, PredictionConfig(), (0.05, 0.1, 30))
     robot, speed = (1.5, 1.0), 0.9
     cost = np.ones((20, 30))
     c.add_moving(cost, FRAME, people, (0.05, 0.1), robot, 0.3, speed)

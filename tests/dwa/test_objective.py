@@ -58,7 +58,7 @@ def test_risk_is_the_worst_discounted_probability_of_each_hypothesis(seed):
         )
         for _ in range(3)
     ]
-    people = predict(movers, CONFIG, 0.2, 0.1, 30)
+    people = predict(movers, CONFIG, (0.2, 0.1, 30))
     worst = np.zeros((3, 3))
     track = np.column_stack([np.linspace(-2, 2, 30), random.uniform(-0.3, 0.3, 30)])
     for k, (x, y) in enumerate(track):

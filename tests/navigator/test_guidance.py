@@ -3,6 +3,7 @@ import math
 import numpy as np
 import pytest
 
+from dynastar.clearance import DistanceField, lower_bounds
 from dynastar.dwa.cost_to_go import value_at
 from dynastar.navigator.guidance import Guidance, Lead
 from dynastar.path import Path
@@ -10,7 +11,7 @@ from dynastar.perception import LocalMap, LocalMapConfig, MovingObstacle, Predic
 from dynastar.perception.prediction import predict
 
 CELL, MARGIN, COMFORT = 0.05, 0.3, 0.25
-NOBODY = predict([], PredictionConfig(), 0.0, 0.1, 40)
+NOBODY = predict([], PredictionConfig(), (0.0, 0.1, 40))
 MEETING = (0.0, 0.1, 1.0, 0.3)
 
 
@@ -32,7 +33,9 @@ class Guide:
 
     def update(self, points, here, s=0.0, people=NOBODY):
         lead = Lead(Path(np.array(points, float)), s)
-        return self.guidance.update(self.local_map, self.occupied, lead, here, people, MEETING)
+        free = (~self.occupied).view(np.uint8)
+        obstacles = DistanceField(lower_bounds(free, CELL), *self.local_map.origin, CELL)
+        return self.guidance.update(obstacles, lead, here, people, MEETING)
 
 
 @pytest.mark.parametrize("goal", [(7.0, 5.0), (14.0, 5.0), (5.0, 40.0), (8.0, 8.0), (-20.0, -20.0)])
@@ -58,7 +61,7 @@ def test_it_falls_by_what_is_driven():
 def test_a_wall_off_the_path_is_led_round():
     guide = Guide()
     guide.wall(6.5, 3.5, 6.7, 6.0)
-    _, _, to_go = guide.update([(5.0, 5.0), (8.5, 5.0)], (5.0, 5.0))
+    _, to_go = guide.update([(5.0, 5.0), (8.5, 5.0)], (5.0, 5.0))
     assert guide.guidance.reachable
     shortest = math.dist((5.0, 5.0), (6.6, 6.35)) + math.dist((6.6, 6.35), (8.5, 5.0))
     assert shortest - 0.3 < value_at(to_go, 5.0, 5.0) < 2.0 * shortest
@@ -82,7 +85,7 @@ def test_no_way_within_the_local_map_is_said():
         (5.9, 4.0, 6.0, 6.0),
     ):
         guide.wall(*box)
-    _, _, to_go = guide.update([(5.0, 5.0), (8.5, 5.0)], (5.0, 5.0))
+    _, to_go = guide.update([(5.0, 5.0), (8.5, 5.0)], (5.0, 5.0))
     assert not guide.guidance.reachable
     assert math.isfinite(value_at(to_go, 5.0, 5.0))
 
@@ -90,14 +93,14 @@ def test_no_way_within_the_local_map_is_said():
 def test_who_stands_too_close_to_something_is_led_out():
     guide = Guide()
     guide.wall(4.0, 4.0, 8.0, 4.8)  # 0.2 m beside the robot, which needs 0.3
-    _, _, to_go = guide.update([(5.0, 5.0), (8.5, 5.5)], (5.0, 5.0))
+    _, to_go = guide.update([(5.0, 5.0), (8.5, 5.5)], (5.0, 5.0))
     assert guide.guidance.reachable
     assert value_at(to_go, 5.0, 5.15) < value_at(to_go, 5.0, 5.0)
 
 
 def test_the_line_starts_at_the_robot_and_descends():
     guide = Guide()
-    _, _, to_go = guide.update([(5.0, 5.0), (9.0, 7.0)], (5.0, 5.0))
+    _, to_go = guide.update([(5.0, 5.0), (9.0, 7.0)], (5.0, 5.0))
     line = guide.guidance.line
     assert line[0].tolist() == [5.0, 5.0]
     assert np.hypot(*np.diff(line, axis=0).T) == pytest.approx(guide.guidance.spacing)
@@ -109,7 +112,7 @@ def test_who_crosses_the_way_makes_it_longer():
     ways = []
     for people in (
         NOBODY,
-        predict([MovingObstacle(7.0, 5.0, 0.0, 0.0, 0.4)], PredictionConfig(), 0.0, 0.1, 40),
+        predict([MovingObstacle(7.0, 5.0, 0.0, 0.0, 0.4)], PredictionConfig(), (0.0, 0.1, 40)),
     ):
         guide = Guide()
         guide.update([(5.0, 5.0), (9.0, 5.0)], (5.0, 5.0), people=people)

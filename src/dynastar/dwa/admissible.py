@@ -6,7 +6,7 @@ import numpy as np
 
 from dynastar.compiled import njit
 from dynastar.dwa.clearance import spare
-from dynastar.dwa.motion import driven, moved
+from dynastar.dwa.motion import driven, moved, stopping_time
 
 ADMISSIBLE, NO_STOP, MOVER, HIDDEN = range(4)
 LOOK = 0.1  # s between the looks at moving obstacles during a stop
@@ -59,7 +59,7 @@ def certified_stop(scene, body, limits, state, command, period):
         angle = 0.25 * (before_w + omega) * period
         if not clear_along(scene.closed, body, scene.kept, start, before, length, angle):
             return NO_STOP
-    stop = max(abs(v) / limits.v_brake, abs(omega) / limits.omega_brake)
+    stop = stopping_time(v, omega, limits)
     if not clear_along(
         scene.closed, body, scene.kept, start, pose, 0.5 * stop * v, 0.5 * stop * omega
     ):
@@ -82,7 +82,7 @@ def rests_in_time(scene, body, limits, state, command, period):
         at_start = hidden_gap(hidden, pose[0], pose[1]) - body.circumscribed
     before = pose
     pose, v, omega = driven(pose, v, omega, command[0], command[1], limits, period)
-    stop = max(abs(v) / limits.v_brake, abs(omega) / limits.omega_brake)
+    stop = stopping_time(v, omega, limits)
     moves = period + stop
     if moves <= period and state[1] == 0.0 and state[2] == 0.0:
         return ADMISSIBLE  # it stays at rest

@@ -11,7 +11,7 @@ import numpy as np
 from dynastar.compiled import njit
 from dynastar.dwa.admissible import ADMISSIBLE, NO_STOP, admissible_speed
 from dynastar.dwa.clearance import distance_at
-from dynastar.dwa.motion import moved, moved_straight, slew
+from dynastar.dwa.motion import moved, moved_straight, slew, stopping_time
 from dynastar.dwa.objective import dist, note_risk, objective, progress, risk, simi, vel
 from dynastar.dwa.rollout import (
     DIST,
@@ -57,7 +57,7 @@ def first_contact(scene, rules, arcs, pose, sample, terms, worst):
     length = angle = np.inf
     worst[:] = 0.0
     end, at_end = pose, gap
-    stop = max(abs(v) / rules.limits.v_brake, abs(omega) / rules.limits.omega_brake)
+    stop = stopping_time(v, omega, rules.limits)
     for k in range(max(arcs.steps, int(math.ceil(0.5 * stop / span.step)))):
         if arcs.printed_motion:
             pose = moved_straight(pose, v * span.step, omega * span.step)
@@ -69,7 +69,7 @@ def first_contact(scene, rules, arcs, pose, sample, terms, worst):
         if k < arcs.steps:
             end, at_end, least = pose, gap, min(least, gap)
             strayed += min(distance_at(scene.path, pose[0], pose[1]), STRAY) / arcs.steps
-            t = (k + 1) * span.step
+            t = (k + 1) * span.step - abs(v) / rules.limits.v_brake
             note_risk(people, k, t, pose[0], pose[1], span.risk_radius, worst)
         if gap < 0.0:
             length, angle = abs(v) * k * span.step, abs(omega) * k * span.step

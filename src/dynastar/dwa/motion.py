@@ -17,6 +17,12 @@ def slew(current, wanted, accel, brake, duration):
     return current + max(-rate * duration, min(rate * duration, wanted - current))
 
 
+@njit(cache=True, inline="always")
+def stopping_time(v, omega, limits):
+    """``robot.stopping_time`` for kernels: seconds until both speeds have ramped to zero."""
+    return max(abs(v) / limits.v_brake, abs(omega) / limits.omega_brake)
+
+
 @njit(cache=True)
 def moved(pose, length, angle):
     """Eq. 4 integrated exactly: the pose (x, y, cos, sin) after an arc of ``length`` m and ``angle`` rad.

@@ -140,7 +140,7 @@ def within(field, x, y):
 def future(scene, rules, state, manoeuvre, gauge, terms, worst):
     """Writes the terms of a manoeuvre, and returns SCORED, DROPPED or TOUCHED.
 
-    ``manoeuvre`` is (v, omega, held steps, tail, whether it has to pass clear of everybody);
+    ``manoeuvre`` is (v, omega, held steps, tail, how long it has to be clear of everybody (s));
     ``gauge`` is (the cost-to-go now, the most progress that could be made (m), the least score that
     is of interest); ``worst`` (m, hypotheses) is room for the risk. DROPPED at contact while the
     sample is held, and where it can no longer score enough. Beyond the local map the cost-to-go is
@@ -148,10 +148,11 @@ def future(scene, rules, state, manoeuvre, gauge, terms, worst):
     """
     body, limits, span = rules.body, rules.limits, rules.span
     weights = weights_of(rules, scene)
-    asked_v, asked_omega, held, tail, has_to_pass = manoeuvre
+    asked_v, asked_omega, held, tail, clear_for = manoeuvre
     begin, scale, enough = gauge
     field, obstacles, margin, people = scene.cost_to_go, scene.obstacles, scene.margin, scene.people
     pose, v, omega = state
+    stop = abs(v) / limits.v_brake
     gap = least_clearance(obstacles, body, pose) - margin
     need = min(0.0, gap) - SLACK
     between = span.horizon_steps // LOOKS
@@ -183,10 +184,11 @@ def future(scene, rules, state, manoeuvre, gauge, terms, worst):
             clear = min(clear, gap)
         k += stride
         if among_people:
-            if has_to_pass and touches(people, k - 1, pose[0], pose[1], body.circumscribed):
-                return TOUCHED
             t = k * span.step
-            note_risk(people, k - 1, t, pose[0], pose[1], span.risk_radius, worst)
+            near = body.circumscribed
+            if t <= clear_for and touches(people, k - 1, pose[0], pose[1], near):
+                return TOUCHED
+            note_risk(people, k - 1, t - stop, pose[0], pose[1], span.risk_radius, worst)
         if k == span.steps:
             terms[DIST] = dist(clear, span.comfort)
             if rules.by_bearing:

@@ -5,19 +5,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.clearance import DistanceField
 from dynastar.perception.hidden import Hidden
 from dynastar.perception.prediction import People
 
 Floats = npt.NDArray[np.float64]
-
-
-class DistanceField(NamedTuple):
-    """Metres from each cell's centre to the nearest marked cell's; low corner (x0, y0), resolution."""
-
-    distance: npt.NDArray[np.float32]
-    x0: float
-    y0: float
-    resolution: float
 
 
 class CostToGo(NamedTuple):

@@ -7,8 +7,14 @@ stops, or backs off.
 import numpy as np
 
 from dynastar.compiled import njit
-from dynastar.dwa.admissible import ADMISSIBLE, MOVER, certified_stop, rests_in_time
-from dynastar.dwa.motion import slew
+from dynastar.dwa.admissible import (
+    ADMISSIBLE,
+    HIDDEN,
+    NO_STOP,
+    certified_stop,
+    rests_in_time,
+)
+from dynastar.dwa.motion import slew, stopping_time
 from dynastar.dwa.objective import objective
 from dynastar.dwa.rollout import (
     LOOKS,
@@ -46,51 +52,49 @@ def refusal(scene, rules, state, command):
     return rests_in_time(scene, body, limits, state, command, period)
 
 
-@njit(cache=True, nogil=True)
-def search(scene, rules, state, n, buffers, bounded):
-    """Scores the admissible of ``n`` samples by Eq. 9 and returns the best, or -1.
-
-    Where a command does not rest in time before moving obstacles, a manoeuvre that begins with it is
-    admissible only if it passes clear of all moving obstacles at constant velocity.
-
-    Two more candidates are written behind them: what the manoeuvre chosen last would do now (n),
-    looked at first, and following the cost-to-go at once (n + 1). Every change from the former has
-    to be worth something. ``buffers`` are samples, commands (n + 2, 2), holds in seconds and tails
-    (n + 2,), terms (n + 2, 5), refusals and scores (n + 2,). Where it is not ``bounded``, candidates
-    that cannot be the best are rolled out to their end, too.
-    """
-    limits, span, period = rules.limits, rules.span, rules.period
-    samples, commands, holds, tails, terms, refused, score = buffers
+@njit(cache=True)
+def prepare(scene, rules, state, n, buffers):
+    """Writes the last two candidates, the commands of all n + 2, and why they are refused."""
+    limits, comfort, period = rules.limits, rules.span.comfort, rules.period
+    samples, commands, refused = buffers[0], buffers[1], buffers[5]
     pose, v, omega = state
+    field, last = scene.cost_to_go, scene.last
+    gap = least_clearance(scene.obstacles, rules.body, pose) - scene.margin
+    samples[n] = last.v, last.omega
+    if last.hold < 0.5 * rules.span.step:
+        samples[n] = tail_speeds(field, limits, comfort, pose, v, gap, last.tail)
+    samples[n + 1] = tail_speeds(field, limits, comfort, pose, v, gap, FOLLOW)
+    slowest, fastest = samples[:n, 0].min(), samples[:n, 0].max()
+    for i in range(n + 2):
+        samples[i, 0] = min(max(samples[i, 0], slowest), fastest)
+        commands[i, 0] = slew(v, samples[i, 0], limits.v_accel, limits.v_brake, period)
+        commands[i, 1] = slew(omega, samples[i, 1], limits.omega_accel, limits.omega_brake, period)
+        refused[i] = refusal(scene, rules, state, (commands[i, 0], commands[i, 1]))
+
+
+@njit(cache=True)
+def best_of(scene, rules, state, asked, buffers, scale, unseen):
+    """The best of the candidates by Eq. 9, or -1. ``asked`` is (n, whether it is ``bounded``).
+
+    Looked at are those that are admissible or may have to pass moving obstacles, or, with ``unseen``,
+    those that are refused for unseen space. ``scale`` is (the cost-to-go now, the most progress).
+    """
+    limits, span = rules.limits, rules.span
+    samples, commands, holds, tails, terms, refused, score = buffers
+    n, bounded = asked
     worst = np.zeros((len(scene.people.now), scene.people.mean.shape[1]))
     found = np.zeros(5)
-    begin = pose_value(scene.cost_to_go, limits, pose, v)
-    between = span.step * (span.horizon_steps // LOOKS)
-    scale = 0.0
-    for look in range(1, LOOKS + 1):
-        scale += min(farthest(max(v, 0.0), limits, look * between), begin) / LOOKS
-    scale = max(scale, LEAST)
     people = len(scene.people.now) > 0
-    gap = least_clearance(scene.obstacles, rules.body, pose) - scene.margin
-    samples[n] = scene.last.v, scene.last.omega
-    if scene.last.hold < 0.5 * span.step:
-        samples[n] = tail_speeds(
-            scene.cost_to_go, limits, span.comfort, pose, v, gap, scene.last.tail
-        )
-    samples[n + 1] = tail_speeds(scene.cost_to_go, limits, span.comfort, pose, v, gap, FOLLOW)
-    slowest, fastest = samples[:n, 0].min(), samples[:n, 0].max()
     best, best_score = -1, -np.inf
     for j in range(n + 2):
         i = j - 2 if j > 1 else n + j
         score[i] = -np.inf
-        samples[i, 0] = min(max(samples[i, 0], slowest), fastest)
-        sample = (samples[i, 0], samples[i, 1])
-        commands[i, 0] = slew(v, sample[0], limits.v_accel, limits.v_brake, period)
-        commands[i, 1] = slew(omega, sample[1], limits.omega_accel, limits.omega_brake, period)
-        refused[i] = refusal(scene, rules, state, (commands[i, 0], commands[i, 1]))
-        if refused[i] != ADMISSIBLE and refused[i] != MOVER:
+        if refused[i] == NO_STOP or (refused[i] == HIDDEN) != unseen:
             continue
-        has_to_pass = refused[i] == MOVER
+        sample, clear_for = (samples[i, 0], samples[i, 1]), 0.0
+        if refused[i] != ADMISSIBLE:
+            clear_for = scene.ahead + rules.period
+            clear_for += stopping_time(commands[i, 0], commands[i, 1], limits)
         change = 0.0 if i == n else span.hysteresis
         for kind in range(6):
             tail, long = kind % 3, kind >= 3
@@ -105,9 +109,9 @@ def search(scene, rules, state, n, buffers, bounded):
                     continue
             elif not worth_holding(sample, limits, tail, long, people):
                 continue
-            manoeuvre = (sample[0], sample[1], held, tail, has_to_pass)
+            manoeuvre = (*sample, held, tail, clear_for)
             enough = max(best_score, score[i]) + change if bounded else -np.inf
-            gauge = (begin, scale, enough)
+            gauge = (scale[0], scale[1], enough)
             outcome = future(scene, rules, state, manoeuvre, gauge, found, worst)
             if outcome != TOUCHED:
                 refused[i] = ADMISSIBLE
@@ -120,4 +124,34 @@ def search(scene, rules, state, n, buffers, bounded):
                     tails[i] = tail
         if score[i] > best_score:
             best, best_score = i, score[i]
+    return best
+
+
+@njit(cache=True, nogil=True)
+def search(scene, rules, state, n, buffers, bounded):
+    """Scores the admissible of ``n`` samples by Eq. 9 and returns the best, or -1.
+
+    Where a command does not rest in time before moving obstacles by their hard bound, a manoeuvre
+    that begins with it is admissible only if it is clear of them, as they are expected to go on, for
+    as long as a stop takes: from whatever comes later the robot can still be at rest. Where moving
+    obstacles leave nothing admissible, those who may be hidden in unseen space stop no manoeuvre.
+
+    Two more candidates are written behind the samples: what the manoeuvre chosen last would do now
+    (n), looked at first, and following the cost-to-go at once (n + 1). Every change from the former
+    has to be worth something. ``buffers`` are samples, commands (n + 2, 2), holds in seconds and tails
+    (n + 2,), terms (n + 2, 5), refusals and scores (n + 2,). Where it is not ``bounded``, candidates
+    that cannot be the best are rolled out to their end, too.
+    """
+    limits, span = rules.limits, rules.span
+    pose, v, _ = state
+    begin = pose_value(scene.cost_to_go, limits, pose, v)
+    between = span.step * (span.horizon_steps // LOOKS)
+    most = 0.0
+    for look in range(1, LOOKS + 1):
+        most += min(farthest(max(v, 0.0), limits, look * between), begin) / LOOKS
+    scale = (begin, max(most, LEAST))
+    prepare(scene, rules, state, n, buffers)
+    best = best_of(scene, rules, state, (n, bounded), buffers, scale, False)
+    if best < 0 and len(scene.people.now) > 0:
+        best = best_of(scene, rules, state, (n, bounded), buffers, scale, True)
     return best

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.clearance import lower_bounds
+from dynastar.clearance import DistanceField, lower_bounds
 from dynastar.dwa.cost_to_go import (
     add_moving,
     descend,
@@ -19,9 +19,8 @@ from dynastar.dwa.cost_to_go import (
     value_at,
 )
 from dynastar.dwa.marching import extend, march, queue_for
-from dynastar.dwa.scene import CostToGo, DistanceField
+from dynastar.dwa.scene import CostToGo
 from dynastar.path import Path
-from dynastar.perception import LocalMap
 from dynastar.perception.prediction import People
 
 Floats = npt.NDArray[np.float64]
@@ -78,27 +77,23 @@ class Guidance:
 
     def update(
         self,
-        local_map: LocalMap,
-        occupied: npt.NDArray[np.bool_],
+        obstacles: DistanceField,
         lead: Lead,
         here: Point,
         people: People,
         meeting: tuple[float, float, float, float],
-    ) -> tuple[DistanceField, DistanceField, CostToGo]:
-        """Distances to obstacles, to the path ahead, and the cost-to-go for a robot at ``here``.
+    ) -> tuple[DistanceField, CostToGo]:
+        """Distances to the path ahead, and the cost-to-go for a robot at ``here``.
 
-        ``occupied`` (n, n) are the local map's cells with obstacles. ``meeting`` says when and how
-        the robot meets moving obstacles: the predictions' begin and step (s), its speed (m/s), its
+        ``obstacles`` are distances to the local map's obstacles. ``meeting`` says when and how the
+        robot meets moving obstacles: the predictions' begin and step (s), its speed (m/s), its
         radius (m).
         """
-        x0, y0 = local_map.origin
+        distance, x0, y0, _ = obstacles
         a, n = self.spacing, len(self._cost)
-        resolution = local_map.config.resolution
-        obstacles = lower_bounds((~occupied).view(np.uint8), resolution)
-        travel_cost(obstacles, FACTOR, self._margin, self._comfort, self._cost)
-        field = DistanceField(obstacles, x0, y0, resolution)
+        travel_cost(distance, FACTOR, self._margin, self._comfort, self._cost)
         given = lead.ahead < math.inf
-        beside = self._distances_to(lead, x0, y0) if given or self._simi else field
+        beside = self._distances_to(lead, x0, y0) if given or self._simi else obstacles
         if given:
             self._cost += BESIDE * np.minimum(beside.distance, 1.0)
         begin, step, speed, radius = meeting
@@ -116,7 +111,7 @@ class Guidance:
         cost_to_go = CostToGo(self._value, self._filled, self._slope, x0, y0, a)
         self._field = cost_to_go
         self._count = trace(cost_to_go, *robot, self._line)
-        return field, beside, cost_to_go
+        return beside, cost_to_go
 
     def _distances_to(self, lead: Lead, x0: float, y0: float) -> DistanceField:
         """Distances (m) to the part of the path that lies ahead in the local map."""

@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.clearance import DistanceField, lower_bounds
 from dynastar.config import choose
 from dynastar.dwa.clearance import kept_margin
 from dynastar.dwa.config import DwaConfig, Search
 from dynastar.dwa.dwa import Choice, DynamicWindow
-from dynastar.dwa.scene import AT_REST, DistanceField, Scene
+from dynastar.dwa.scene import AT_REST, Scene
 from dynastar.errors import InputError
 from dynastar.geometry import Goal, Pose2D, Twist, as_goals, wrap_angle
 from dynastar.grid import OccupancyGrid
@@ -243,19 +244,22 @@ class Navigator:
     ) -> Scene:
         """The scene for the window at the time when a command takes effect."""
         config, limits, local = self.config, self.robot.limits, self.sensing.local_map
-        span = self.window.span
+        span, resolution = self.window.span, local.config.resolution
         occupied = self.planning_map.stands_in(local)
+        distances = lower_bounds((~occupied).view(np.uint8), resolution)
+        obstacles = DistanceField(distances, *local.origin, resolution)
         moving = self.sensing.moving(state.stamp, movers)
-        people = predict(moving, config.prediction, config.latency, span.step, span.horizon_steps)
+        times = config.latency, span.step, span.horizon_steps
+        people = predict(moving, config.prediction, times, obstacles)
         lead = self.route.lead(limits.v_max * span.step * span.horizon_steps)
-        obstacles, beside, cost_to_go = self.guidance.update(
-            local, occupied, lead, (pose.x, pose.y), people,
+        beside, cost_to_go = self.guidance.update(
+            obstacles, lead, (pose.x, pose.y), people,
             (config.latency, span.step, limits.v_max, span.risk_radius),
         )  # fmt: skip
         hidden = self.sensing.unseen(occupied, state.stamp)
         stop = state.twist.v**2 / (2.0 * limits.v_brake)
         stop += abs(state.twist.v) * (config.latency + 2.0 * config.period)
-        closed = DistanceField(local.field, *local.origin, local.config.resolution)
+        closed = DistanceField(local.field, *local.origin, resolution)
         margin = self.margin + config.heading_error * stop
         stands = (pose.x, pose.y, math.cos(pose.theta), math.sin(pose.theta))
         return Scene(
