@@ -69,7 +69,7 @@ def first_contact(scene, rules, arcs, pose, sample, terms, worst):
         if k < arcs.steps:
             end, at_end, least = pose, gap, min(least, gap)
             strayed += min(distance_at(scene.path, pose[0], pose[1]), STRAY) / arcs.steps
-            t = (k + 1) * span.step - abs(v) / rules.limits.v_brake
+            t = (k + 1) * span.step
             note_risk(people, k, t, pose[0], pose[1], span.risk_radius, worst)
         if gap < 0.0:
             length, angle = abs(v) * k * span.step, abs(omega) * k * span.step

@@ -69,11 +69,10 @@ def contact_probability(gap, spread):
 def note_risk(people, k, t, x, y, radius, worst):
     """Raises ``worst`` (m, hypotheses): the highest discounted contact probability so far.
 
-    The robot is a disc of ``radius`` at (x, y) at step ``k``, ``t`` seconds after it could have come
-    to rest: what comes sooner counts in full.
+    The robot is a disc of ``radius`` at (x, y), ``t`` seconds from now, at step ``k``.
     """
     spread = people.spread[k]
-    weight = math.exp(-max(t, 0.0) / people.memory)
+    weight = math.exp(-t / people.memory)
     for m in range(len(people.now)):
         near = radius + people.now[m, 4]
         reach = near + 3.0 * spread

@@ -152,7 +152,6 @@ def future(scene, rules, state, manoeuvre, gauge, terms, worst):
     begin, scale, enough = gauge
     field, obstacles, margin, people = scene.cost_to_go, scene.obstacles, scene.margin, scene.people
     pose, v, omega = state
-    stop = abs(v) / limits.v_brake
     gap = least_clearance(obstacles, body, pose) - margin
     need = min(0.0, gap) - SLACK
     between = span.horizon_steps // LOOKS
@@ -188,7 +187,7 @@ def future(scene, rules, state, manoeuvre, gauge, terms, worst):
             near = body.circumscribed
             if t <= clear_for and touches(people, k - 1, pose[0], pose[1], near):
                 return TOUCHED
-            note_risk(people, k - 1, t - stop, pose[0], pose[1], span.risk_radius, worst)
+            note_risk(people, k - 1, t, pose[0], pose[1], span.risk_radius, worst)
         if k == span.steps:
             terms[DIST] = dist(clear, span.comfort)
             if rules.by_bearing:
