@@ -8,11 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dynastar.dwa import DynamicWindow
+from dynastar.dwa.admissible import MOVER
 from dynastar.dwa.config import DwaConfig, Weights
 from dynastar.dwa.objective import note_risk, risk
 from dynastar.dwa.scene import AT_REST, FOLLOW, Manoeuvre
 from dynastar.geometry import Pose2D, Twist
 from dynastar.perception import MovingObstacle
+from dynastar.perception.hidden import Hidden
 from dynastar.robot import ROBOTS, Footprint, Limits, Robot, arc, slew
 from scenes import STEP, boxed, empty, field_of, scene_of
 
@@ -161,6 +163,35 @@ def test_the_robot_brakes_for_whom_it_cannot_pass():
     choice = choose(empty(), (3.0, 4.0, 0.0), Twist(1.0, 0.0), movers=movers)
     assert choice.command is None or choice.command.v < 0.95
     assert choice.refusals["moving obstacle"] > 0
+
+
+def test_a_manoeuvre_has_to_be_clear_for_as_long_as_a_stop_takes():
+    """Head-on at 1 m/s, two who would meet in 2 s: a stop takes 1.25 s and more."""
+    pose, twist = Pose2D(1.5, 4.0, 0.0), Twist(1.0, 0.0)
+    shut = boxed((0.5, 3.0, 7.5, 3.3), (0.5, 4.7, 7.5, 5.0))  # a corridor without room to pass
+    for gap, refused in ((2.0 * 1.75, False), (2.0 * 1.0, True)):
+        mover = MovingObstacle(pose.x + 0.6 + gap, 4.0, -1.0, 0.0, 0.3)
+        scene = scene_of(shut, movers=[mover], last=Manoeuvre(1.0, 0.0, 0.5, FOLLOW))
+        choice = DynamicWindow(ROUND, DwaConfig(), PERIOD).survey(pose, twist, scene)
+        fast = choice.samples[:, 0] > 0.99
+        assert fast.any()
+        assert (choice.refused[fast] == MOVER).all() == refused
+
+
+def test_unseen_space_gives_way_only_where_a_stop_would_end_in_somebodys_way():
+    """All that the robot can do brings it nearer to unseen space than it can rest in time."""
+    distance = np.repeat(np.linspace(6.0, -2.0, 80, dtype=np.float32)[None], 80, axis=0)
+    hidden = Hidden(distance, 0.0, 0.0, 0.1, 0.25, 2.0, 0.1)
+    pose, twist = Pose2D(4.0, 4.0, 0.0), Twist(1.0, 0.0)
+    crossing = MovingObstacle(4.7, 6.4, 0.0, -1.0, 0.3)
+    aside = MovingObstacle(1.0, 7.0, 0.0, 0.3, 0.3)
+    for movers, drives in (([], False), ([aside], False), ([crossing], True)):
+        scene = scene_of(
+            empty(), movers=movers, hidden=hidden, last=Manoeuvre(1.0, 0.0, 0.5, FOLLOW)
+        )
+        choice = DynamicWindow(ROUND, DwaConfig(), PERIOD).choose(pose, twist, scene)
+        assert (choice.command is not None) == drives
+        assert (choice.refusals["unseen space"] > 0) == (not drives)
 
 
 @given(st.sampled_from(sorted(ROBOTS)), st.floats(0, 1), st.floats(-1, 1), st.integers(0, 10**6))

@@ -27,7 +27,7 @@ from dynastar.dwa.rollout import (
     tail_speeds,
     weights_of,
 )
-from dynastar.dwa.scene import BACK, FOLLOW
+from dynastar.dwa.scene import BACK, FOLLOW, STOP
 
 LEAST = 0.1  # m of progress that is worth all of it, at least
 
@@ -127,14 +127,23 @@ def best_of(scene, rules, state, asked, buffers, scale, unseen):
     return best
 
 
+@njit(cache=True)
+def stops_in_the_way(scene, rules, state, scale):
+    """Whether a moving obstacle, as it is expected to go on, would touch a robot that stops now."""
+    worst = np.zeros((len(scene.people.now), scene.people.mean.shape[1]))
+    stop = (0.0, 0.0, 1, STOP, np.inf)
+    gauge = (scale[0], scale[1], -np.inf)
+    return future(scene, rules, state, stop, gauge, np.zeros(5), worst) == TOUCHED
+
+
 @njit(cache=True, nogil=True)
 def search(scene, rules, state, n, buffers, bounded):
     """Scores the admissible of ``n`` samples by Eq. 9 and returns the best, or -1.
 
     Where a command does not rest in time before moving obstacles by their hard bound, a manoeuvre
     that begins with it is admissible only if it is clear of them, as they are expected to go on, for
-    as long as a stop takes: from whatever comes later the robot can still be at rest. Where moving
-    obstacles leave nothing admissible, those who may be hidden in unseen space stop no manoeuvre.
+    as long as a stop takes: from whatever comes later the robot can still be at rest. Where nothing
+    is admissible and a stop would end in the way of a moving obstacle, unseen space refuses nothing.
 
     Two more candidates are written behind the samples: what the manoeuvre chosen last would do now
     (n), looked at first, and following the cost-to-go at once (n + 1). Every change from the former
@@ -152,6 +161,6 @@ def search(scene, rules, state, n, buffers, bounded):
     scale = (begin, max(most, LEAST))
     prepare(scene, rules, state, n, buffers)
     best = best_of(scene, rules, state, (n, bounded), buffers, scale, False)
-    if best < 0 and len(scene.people.now) > 0:
+    if best < 0 and stops_in_the_way(scene, rules, state, scale):
         best = best_of(scene, rules, state, (n, bounded), buffers, scale, True)
     return best
