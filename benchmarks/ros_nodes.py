@@ -170,6 +170,7 @@ def main() -> None:
     parser.add_argument("--json-out", type=Path)
     parser.add_argument("--bags", type=Path, help="new folder for recordings of the missions")
     options = parser.parse_args()
+    subprocess.run([sys.executable, "-m", "dynastar", "warmup"], check=True)
     runs = []
     if options.minutes > 0.0:
         runs.append({"run": "to and fro", **run(60.0 * options.minutes, 0.0)})
