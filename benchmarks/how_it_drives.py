@@ -47,7 +47,7 @@ class Watched(Navigator):
         walking = any(track.state == "confirmed" for track in self.status.tracks)
         telling = walking * min((choice.refused == 0).sum(), (choice.refused > 0).sum())
         if telling > Watched.best[0]:
-            path = None if self._path is None else self._path.points
+            path = None if self.route.path is None else self.route.path.points
             kept = copy.deepcopy((*self.seen, state, choice, self.guidance.line, path))
             Watched.best = int(telling), {"tick": kept, "robot": self.robot}
         return twist
@@ -76,7 +76,7 @@ def draw_scene(axes: Axes, scene: Any, pose: Any, line: Any, path: Any) -> None:
                 axes.add_patch(ring)
     for h, name in enumerate(NAMES):
         axes.plot([], [], color=COLOURS[h], label=f"{name} ({WEIGHTS[h]:g})")
-    axes.set_title("Predicted: every second, with one deviation more", fontsize=10)
+    axes.set_title("Predicted positions every second, grown by one standard deviation", fontsize=10)
 
 
 def draw_choice(axes: Axes, scene: Any, pose: Any, state: Any, choice: Any, robot: Any) -> None:
