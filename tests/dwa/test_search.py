@@ -166,7 +166,7 @@ def test_the_robot_brakes_for_whom_it_cannot_pass():
 
 
 def test_a_manoeuvre_has_to_be_clear_for_as_long_as_a_stop_takes():
-    """Head-on at 1 m/s, two who would meet in 2 s: a stop takes 1.25 s and more."""
+    """Head-on at 1 m/s each, contact in 1.75 s and in 1 s; a stop takes 1.25 s and a period."""
     pose, twist = Pose2D(1.5, 4.0, 0.0), Twist(1.0, 0.0)
     shut = boxed((0.5, 3.0, 7.5, 3.3), (0.5, 4.7, 7.5, 5.0))  # a corridor without room to pass
     for gap, refused in ((2.0 * 1.75, False), (2.0 * 1.0, True)):

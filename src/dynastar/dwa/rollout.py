@@ -184,8 +184,7 @@ def future(scene, rules, state, manoeuvre, gauge, terms, worst):
         k += stride
         if among_people:
             t = k * span.step
-            near = body.circumscribed
-            if t <= clear_for and touches(people, k - 1, pose[0], pose[1], near):
+            if t <= clear_for and touches(people, k - 1, pose[0], pose[1], body.circumscribed):
                 return TOUCHED
             note_risk(people, k - 1, t, pose[0], pose[1], span.risk_radius, worst)
         if k == span.steps:

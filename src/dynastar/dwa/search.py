@@ -76,8 +76,9 @@ def prepare(scene, rules, state, n, buffers):
 def best_of(scene, rules, state, asked, buffers, scale, unseen):
     """The best of the candidates by Eq. 9, or -1. ``asked`` is (n, whether it is ``bounded``).
 
-    Looked at are those that are admissible or may have to pass moving obstacles, or, with ``unseen``,
-    those that are refused for unseen space. ``scale`` is (the cost-to-go now, the most progress).
+    Considers the candidates that are admissible or would have to pass moving obstacles; with
+    ``unseen`` those that were refused for unseen space. ``scale`` is (the cost-to-go now, the most
+    progress), both in metres.
     """
     limits, span = rules.limits, rules.span
     samples, commands, holds, tails, terms, refused, score = buffers

@@ -117,7 +117,7 @@ def predict(
 ) -> People:
     """Predictions at ``times`` (begin, step, steps): ``steps`` of ``step`` seconds from ``begin`` on.
 
-    ``walls`` are distances to what stands, which moving obstacles do not walk into.
+    ``walls`` are distances to the obstacles at rest, which predicted positions do not enter.
     """
     begin, step, steps = times
     now = np.zeros((len(movers), 6))
