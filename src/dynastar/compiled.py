@@ -36,9 +36,13 @@ def folder() -> Path:
 
 
 def digest() -> str:
-    """Digest of the sources of all kernels: names the cache folder of this version."""
-    found = hashlib.sha256()
-    for source in sorted(Path(__file__).parent.rglob("*.py")):
+    """Digest of the sources of all kernels and of where they are: names this version's cache folder.
+
+    numba finds a kernel by the path of its source, so an installation cannot use another's.
+    """
+    package = Path(__file__).parent
+    found = hashlib.sha256(os.fsencode(package))
+    for source in sorted(package.rglob("*.py")):
         text = source.read_bytes()
         if b"njit" in text:
             found.update(source.name.encode() + text)
