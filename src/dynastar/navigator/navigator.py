@@ -275,11 +275,20 @@ class Navigator:
             self._speed_cap(pose),
             beside,
             KEPT if lead.ahead < math.inf else 0.0,
-            self.route.target(pose, limits.v_max * config.dwa.arcs.time),
+            self._target(pose),
         )
+
+    def _target(self, pose: Pose2D) -> tuple[float, float]:
+        """The intermediate target of Eq. 8's heading; the robot's place where no term needs it."""
+        dwa = self.config.dwa
+        if dwa.progress == "cost-to-go":
+            return pose.x, pose.y
+        return self.route.target(pose, self.robot.limits.v_max * dwa.arcs.time)
 
     def _speed_cap(self, pose: Pose2D) -> float:
         """The speed (m/s) that leaves room to slow down for the map's speed limits ahead."""
+        if self.planning_map.grid.speed_limit is None:
+            return self.robot.limits.v_max
         line = self.guidance.line
         ahead = np.maximum(np.arange(len(line)) - 1.0, 0.0) * self.guidance.spacing
         limit = self.planning_map.speed_limit(np.vstack([[pose.x, pose.y], line]))

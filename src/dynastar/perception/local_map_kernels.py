@@ -191,20 +191,20 @@ def compose_states(free_at, hit_at, barred, horizon, states, open_):
     """States from stamps: 0 unseen, 1 free, 2 occupied; what is older than ``horizon`` is unseen.
 
     ``open_`` (uint8) is 1 where the robot may be: observed free and not barred; the rim is closed.
+    Without branches, so that several cells go at once.
     """
     rows, columns = states.shape
     for row in range(rows):
+        frees, hits, bars = free_at[row], hit_at[row], barred[row]
+        row_states, row_open = states[row], open_[row]
         for column in range(columns):
-            free, hit = free_at[row, column], hit_at[row, column]
-            state = 0
-            if hit >= free:
-                if hit >= horizon:
-                    state = 2
-            elif free >= horizon:
-                state = 1
-            states[row, column] = state
-            rim = row == 0 or column == 0 or row == rows - 1 or column == columns - 1
-            open_[row, column] = 1 if state == 1 and not barred[row, column] and not rim else 0
+            free, hit = frees[column], hits[column]
+            is_occupied = (hit >= free) & (hit >= horizon)
+            is_free = (free > hit) & (free >= horizon)
+            row_states[column] = 2 * is_occupied + is_free
+            row_open[column] = is_free & (not bars[column])
+    open_[0], open_[rows - 1] = 0, 0
+    open_[:, 0], open_[:, columns - 1] = 0, 0
 
 
 @njit(cache=True)

@@ -139,7 +139,7 @@ class Tracker:
         moving = kernels.points_on(points, owned[0], self._rows, groups)
         kept = self._rows[self._rows[:, kernels.T_STATE] != kernels.LOST]
         new = groups[~taken & (groups[:, detection.G_TRACK] < 0.0)]
-        self._rows = np.vstack([kept, self._born(new, now)])
+        self._rows = np.vstack([kept, self._born(new, now)]) if len(new) else kept
         self.tracks = tuple(self._listed())
         self._past.add(scan, sensor)
         return moving
