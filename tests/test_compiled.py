@@ -34,7 +34,7 @@ def test_kernels_are_kept_there_even_if_numba_was_imported_before(tmp_path):
     assert list((tmp_path / "dynastar").rglob("*.nbi"))
 
 
-def test_the_folder_is_named_after_the_sources(tmp_path, monkeypatch):
+def test_the_folder_is_named_after_the_sources_and_where_they_are(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     before = compiled.digest()
     assert compiled.caches() == tmp_path / "dynastar"
@@ -43,7 +43,12 @@ def test_the_folder_is_named_after_the_sources(tmp_path, monkeypatch):
     monkeypatch.setattr(compiled, "__file__", str(tmp_path / "compiled.py"))
     alone = compiled.digest()
     source.write_text("from dynastar.compiled import njit  # edited\n")
-    assert len({before, alone, compiled.digest()}) == 3
+    edited = compiled.digest()
+    other = tmp_path / "other"  # an installation of the same sources
+    other.mkdir()
+    source.rename(other / "kernels.py")
+    monkeypatch.setattr(compiled, "__file__", str(other / "compiled.py"))
+    assert len({before, alone, edited, compiled.digest()}) == 4
 
 
 def test_importing_dynastar_imports_nothing_heavy():
