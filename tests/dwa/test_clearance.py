@@ -6,7 +6,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dynastar.dwa import body_of
-from dynastar.dwa.clearance import body_distance, distance_at, polygon_distance, spare
+from dynastar.dwa.clearance import (
+    body_distance,
+    distance_at,
+    kept_margin,
+    polygon_distance,
+    spare,
+)
 from dynastar.robot import ROBOTS, Footprint, Robot
 from naive import spare_of_rule
 from scenes import CELL, boxed, centres_of, empty, field_of
@@ -108,3 +114,30 @@ def test_a_closed_cell_inside_the_footprint_does_not_void_the_check_of_others(na
 def test_what_lies_outside_the_field_counts_as_closed():
     assert distance_at(field_of(empty()), -1.0, 4.0) == 0.0
     assert spare(field_of(empty()), body("disc"), MARGIN, at(4.0, 4.0), at(0.2, 4.0)) < 0.0
+
+
+@given(footprints, st.floats(0.0, 0.3), st.floats(0.0, 0.3))
+@settings(max_examples=60, deadline=None)
+def test_the_margin_kept_is_what_there_is_but_not_too_little(name, margin, gap):
+    """Never under half a cell's diagonal, as far as the margin goes: the obstacle may fill its cell."""
+    closed = empty()
+    closed[80, 80] = True
+    shape, (x, y) = body(name), ((80 + 0.5) * CELL, (80 + 0.5) * CELL)
+    kept = kept_margin(field_of(closed), shape, margin, at(x - reach_ahead(shape) - gap, y))
+    least = min(margin, max(0.5 * margin, CELL / math.sqrt(2.0)))
+    most = min(margin, max(least, gap))
+    assert least <= kept <= most + 1e-6
+    if gap < CELL:  # further away it is a lower bound
+        assert kept == pytest.approx(most, abs=1e-6)
+
+
+def reach_ahead(shape):
+    """How far a footprint reaches ahead of its centre along its own x axis (m)."""
+    if len(shape.vertices) == 0:
+        return shape.circumscribed
+    crossings = []
+    ends = np.roll(shape.vertices, -1, axis=0)
+    for (ax, ay), (bx, by) in zip(shape.vertices, ends, strict=True):
+        if (ay <= 0.0) != (by <= 0.0):
+            crossings.append(ax + (bx - ax) * ay / (ay - by))
+    return max(crossings)

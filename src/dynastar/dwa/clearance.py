@@ -101,7 +101,9 @@ def kept_margin(field, body, margin, pose):
     """The margin (m) that a robot at ``pose`` keeps from every closed cell.
 
     Noise may set a cell nearer to the robot than its margin. Beside a wall it could then move
-    neither along it nor away, so it keeps what it has, but at least half of the margin.
+    neither along it nor away, so it keeps what it has, but at least half of the margin, and half
+    a cell's diagonal: the obstacle may stand anywhere in the cell.
     """
     nowhere = (1e9, 1e9, 1.0, 0.0)
-    return min(margin, max(0.5 * margin, spare(field, body, 0.0, nowhere, pose)))
+    least = min(margin, max(0.5 * margin, field.resolution / math.sqrt(2.0)))
+    return min(margin, max(least, spare(field, body, 0.0, nowhere, pose)))
