@@ -117,8 +117,8 @@ def test_what_lies_outside_the_field_counts_as_closed():
 
 
 @given(footprints, st.floats(0.0, 0.3), st.floats(0.0, 0.3))
-@settings(max_examples=60, deadline=None)
-def test_the_margin_kept_is_what_there_is_but_not_too_little(name, margin, gap):
+@settings(max_examples=200, deadline=None)
+def test_the_margin_kept_is_at_most_the_gap_but_covers_half_a_diagonal(name, margin, gap):
     """Never under half a cell's diagonal, as far as the margin goes: the obstacle may fill its cell."""
     closed = empty()
     closed[80, 80] = True
@@ -126,9 +126,9 @@ def test_the_margin_kept_is_what_there_is_but_not_too_little(name, margin, gap):
     kept = kept_margin(field_of(closed), shape, margin, at(x - reach_ahead(shape) - gap, y))
     least = min(margin, max(0.5 * margin, CELL / math.sqrt(2.0)))
     most = min(margin, max(least, gap))
-    assert least <= kept <= most + 1e-6
-    if gap < CELL:  # further away it is a lower bound
-        assert kept == pytest.approx(most, abs=1e-6)
+    assert least <= kept <= most + 1e-6  # the gap is known by a lower bound only
+    if name == "disc" and gap > margin + CELL:
+        assert kept == margin
 
 
 def reach_ahead(shape):
