@@ -89,10 +89,21 @@ class Client:
         assert self.spin(seconds, lambda: words in self.state), f"{words}: not in {self.state}"
 
     def send(self, x: float, y: float, frame: str = "map") -> None:
+        """Sends a goal once, as `ros2 topic pub --once` does: to a subscription that is known."""
+        matched = self.goals.get_subscription_count
+        assert matched() or self.spin(10.0, matched), "nobody takes goals"
         goal = PoseStamped()
         goal.header.frame_id = frame
         goal.pose.position.x, goal.pose.position.y, goal.pose.orientation.w = x, y, 1.0
         self.goals.publish(goal)
+
+    def set_off(self, x: float, y: float) -> None:
+        """Sends a goal each second until it drives: one sent before both sides match is lost."""
+        for _ in range(20):
+            self.send(x, y)
+            if self.spin(1.0, self.drives):
+                return
+        raise AssertionError(f"it does not drive: {self.state}, {self.commands[-3:]}")
 
     def call(self, kind, name: str, request):
         client = self.node.create_client(kind, name)

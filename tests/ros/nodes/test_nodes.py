@@ -32,7 +32,7 @@ def brakes_after(client, struck: float) -> float:
 
 
 def test_it_drives_to_a_goal_and_stops(office):
-    office.send(7.2, 10.0)
+    office.set_off(7.2, 10.0)
     office.wait_for("arrived")
     assert math.dist(office.place, (7.2, 10.0)) < 0.35
     assert office.plans
@@ -49,8 +49,7 @@ def test_it_drives_to_a_goal_and_stops(office):
 
 
 def test_goals_replace_one_another_and_are_cancelled_and_refused(office):
-    office.send(7.2, 10.0)
-    assert office.spin(20.0, office.drives)
+    office.set_off(7.2, 10.0)
     office.send(5.0, 2.0)
     assert office.spin(10.0, lambda: office.plans[-1].poses[-1].pose.position.y == 2.0)
     for x, y, frame in ((7.0, 2.0, "odom"), (math.nan, 2.0, "map"), (700.0, 2.0, "map")):
@@ -66,8 +65,7 @@ def test_goals_replace_one_another_and_are_cancelled_and_refused(office):
 
 @pytest.mark.parametrize("lost", ["scan", "odom"])
 def test_lost_data_brake_it_and_it_goes_on_when_they_are_back(office, lost):
-    office.send(12.0, 12.5)
-    assert office.spin(20.0, office.drives)
+    office.set_off(12.0, 12.5)
     said = office.set_parameter("dynastar_sim", f"publish_{lost}", type=1, bool_value=False)
     struck = time.monotonic()
     assert said.successful
@@ -79,8 +77,7 @@ def test_lost_data_brake_it_and_it_goes_on_when_they_are_back(office, lost):
 
 
 def test_a_simulator_that_dies_stops_it(office):
-    office.send(12.0, 12.5)
-    assert office.spin(20.0, office.drives)
+    office.set_off(12.0, 12.5)
     office.simulator.kill()
     assert brakes_after(office, time.monotonic()) < BRAKING
     assert "sensor_lost" in office.state
@@ -101,8 +98,7 @@ def test_plans_parameters_and_another_map(office):
     assert not bad.successful
     fixed = office.set_parameter("dynastar", "robot", type=4, string_value="jackal")
     assert "read at the start only" in fixed.reason
-    office.send(7.2, 10.0)
-    assert office.spin(20.0, office.drives)
+    office.set_off(7.2, 10.0)
     plans = len(office.plans)
     grid = load_map(OFFICE)
     values = grid.values.copy()
@@ -165,8 +161,7 @@ def test_a_recording_of_the_node_gives_its_commands_again(client, processes, tmp
     words = ["--ros-args", "-p", "latency:=0.1", "-p", f"bag:={bag}"]
     client.navigator = processes.start("ros", "--scenario", OFFICE_SCENARIO, *words)
     client.wait_for("no goal")
-    client.send(7.2, 10.0)
-    assert client.spin(20.0, client.drives)
+    client.set_off(7.2, 10.0)
     client.spin(4.0)
     client.set_parameter("dynastar", "dwa.horizon", type=3, double_value=3.0)
     client.spin(1.0)
