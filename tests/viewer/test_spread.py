@@ -67,6 +67,23 @@ def test_columns_have_each_arms_number():
     assert names == ["default", "paper", "none"]
 
 
+def test_the_words_of_narrow_columns_do_not_overlap():
+    column = Column("people\ntime / default's", {"a name of an arm, a long one": 0.9, "b": 1.7})
+    share = Column("people\narrived, %", {"a name of an arm, a long one": 6.0, "b": 80.0})
+    figure = draw_columns([column, share._replace(range=(0.0, 100.0)), share] * 2)
+    figure.canvas.draw()
+    boxes = [axes.xaxis.label.get_window_extent() for axes in figure.axes]
+    for axes in figure.axes:
+        low, high = axes.get_xlim()
+        shown = [text for text in axes.get_xticklabels() if low <= text.get_position()[0] <= high]
+        assert shown
+        boxes += [text.get_window_extent() for text in shown]
+    for k, box in enumerate(boxes):
+        assert box.y0 > 0.0
+        assert not any(box.overlaps(other) for other in boxes[:k])
+    assert figure.axes[1].get_xlim() == (0.0, 100.0)
+
+
 @pytest.mark.parametrize("count", [1, 3])
 def test_words_stay_on_the_sheet_and_the_file_is_the_same(tmp_path: Path, count: int):
     spreads = [Spread("ratio", VALUES, printed=0.5, log=True)] * count

@@ -152,22 +152,24 @@ def report_ablation(asked: Asked) -> Report:
 def _columns(found: Mapping[str, Mapping[str, Any]]) -> list[Column]:
     """Data of the ablation's picture: for each suite, the arms in the order of the first suite."""
     order = ablation.by_effect(next(iter(found.values())))
-    shown: dict[str, tuple[Callable[[Mapping[str, Any]], float | None], str]] = {
-        "arrived, %": (lambda of: 100.0 * of["arrived"] / of["missions"], ".0f"),
+    percent = (0.0, 100.0)
+    shown: dict[str, tuple[Callable[[Mapping[str, Any]], float | None], Any]] = {
+        "arrived, %": (lambda of: 100.0 * of["arrived"] / of["missions"], percent),
         "touched, %": (
             lambda of: 100.0 * (of["contacts_moving"] + of["contacts_resting"]) / of["missions"],
-            ".0f",
+            percent,
         ),
-        "time / default's": (lambda of: of["time_ratio"], ".2f"),
+        "time / default's": (lambda of: of["time_ratio"], None),
     }
     return [
         Column(
-            f"{suite}: {label}",
+            f"{suite}\n{label}",
             {arm: of(arms[arm]) if arm in arms else None for arm in order},
-            format_,
+            ".0f" if range_ else ".2f",
+            range=range_,
         )
         for suite, arms in found.items()
-        for label, (of, format_) in shown.items()
+        for label, (of, range_) in shown.items()
     ]
 
 

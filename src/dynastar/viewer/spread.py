@@ -15,7 +15,8 @@ from dynastar.viewer import palette
 from dynastar.viewer.sheet import COLUMN, PAGE, SMALL, legend_style, plain, room, sheet
 
 LINE, LETTER, GAP = 0.24, 0.052, 0.2  # inches: a row, a letter's width, between two columns
-LOW = 0.33  # inches under the rows, the legend not counted
+LOW = 0.33  # inches under the rows, the legend not counted, for labels of one line
+TICK = 0.27  # inches from one number of an axis to the next, at least
 FEW = 40  # values, up to which each is a dot
 BOX: dict[str, Any] = {"facecolor": palette.EXPLORED, "edgecolor": palette.FIRST_PATH}
 MEDIAN: dict[str, Any] = {"color": palette.FIRST_PATH, "linewidth": 1.8}
@@ -24,7 +25,7 @@ PRINTED: dict[str, Any] = {"linestyle": "none", "marker": "D", "color": palette.
 
 
 class Spread(NamedTuple):
-    """A measure's values by group, one row each; ``label`` names its axis.
+    """A measure's values by group, one row each; ``label`` names its axis, in one line or more.
 
     ``printed`` is what the paper prints, one number for all groups or one by group; a line stands
     at ``reference`` (1 for a ratio); ``format`` is of the medians. The worst value is the largest,
@@ -41,19 +42,23 @@ class Spread(NamedTuple):
 
 
 class Column(NamedTuple):
-    """A measure with one number an arm, None where it has none; ``format`` is of the numbers."""
+    """A measure with one number an arm, None where it has none; ``format`` is of the numbers.
+
+    Its axis has the ``range`` that is given, else that of the numbers.
+    """
 
     label: str
     values: Mapping[str, float | None]
     format: str = ".1f"
     log: bool = False
+    range: tuple[float, float] | None = None
 
 
 def draw_spreads(spreads: Sequence[Spread], width: float | None = None) -> Figure:
     """Measures side by side, their groups down the side, as boxes (see ``show_spread``)."""
     groups = list(spreads[0].values)
     width = width or (COLUMN if len(spreads) == 1 else PAGE)
-    figure, rooms = _columns(groups, len(spreads), width, legend=True)
+    figure, rooms = _columns(groups, [spread.label for spread in spreads], width, legend=True)
     for axes, spread in zip(rooms, spreads, strict=True):
         show_spread(axes, spread, groups)
     entries: list[Artist] = [
@@ -110,7 +115,7 @@ def draw_columns(columns: Sequence[Column], width: float = PAGE, best: str | Non
     The arm ``best`` stands out, and a line through its value goes down each column.
     """
     arms = list(columns[0].values)
-    figure, rooms = _columns(arms, len(columns), width, legend=False)
+    figure, rooms = _columns(arms, [column.label for column in columns], width, legend=False)
     for axes, column in zip(rooms, columns, strict=True):
         for row, arm in enumerate(arms):
             value = column.values[arm]
@@ -124,17 +129,20 @@ def draw_columns(columns: Sequence[Column], width: float = PAGE, best: str | Non
         if own is not None:
             axes.axvline(own, color=palette.DRIVEN, linewidth=0.6, linestyle=(0, (3, 2)), zorder=1)
         _finish(axes, column.label, column.log, len(arms))
+        if column.range is not None:
+            axes.set_xlim(column.range)
     return figure
 
 
 def _columns(
-    names: Sequence[str], count: int, width: float, legend: bool
+    names: Sequence[str], labels: Sequence[str], width: float, legend: bool
 ) -> tuple[Figure, list[Axes]]:
-    """A sheet with ``count`` axes side by side over rows of one height, the first with names."""
+    """A sheet with an axis for each label side by side over rows of one height, the first with names."""
+    count, more_lines = len(labels), max(label.count("\n") for label in labels)
     left = 0.12 + LETTER * max(len(name) for name in names)
     beside = 0.3  # inches for the figures at the right of a column
     across = (width - left - GAP * (count - 1) - 0.05) / count - beside
-    low = LOW + (0.17 * (1 if width > 4.5 else 2) + 0.05 if legend else 0.05)
+    low = LOW + 0.13 * more_lines + (0.17 * (1 if width > 4.5 else 2) + 0.05 if legend else 0.05)
     tall = LINE * len(names)
     figure = sheet(width, low + tall + 0.1)
     rooms = []
@@ -154,16 +162,18 @@ def _columns(
 
 def _finish(axes: Axes, label: str, log: bool, rows: int) -> None:
     axes.set_xlabel(label, labelpad=2)
+    inches = axes.get_window_extent().width / axes.figure.dpi
+    bins = min(4, max(1, int(inches / TICK)))
+    few = MaxNLocator(bins, steps=[1, 2, 2.5, 5, 10], min_n_ticks=min(bins, 2))
     if log:
         axes.set_xscale("log")
         low, high = axes.get_xlim()
         subs = (1.0, 2.0, 5.0) if high < 60.0 * low else (1.0,)
-        narrow = MaxNLocator(4, steps=[1, 2, 2.5, 5, 10])
-        axes.xaxis.set_major_locator(narrow if high < 4.0 * low else LogLocator(subs=subs))
+        axes.xaxis.set_major_locator(few if high < 4.0 * low else LogLocator(subs=subs))
         axes.xaxis.set_minor_locator(NullLocator())
         axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     else:
-        axes.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 2.5, 5, 10]))
+        axes.xaxis.set_major_locator(few)
     axes.grid(axis="x", color=palette.UNKNOWN, linewidth=0.5, zorder=0.5)
     axes.set_axisbelow(True)
     axes.set_ylim(rows - 0.5, -0.5)
@@ -172,7 +182,7 @@ def _finish(axes: Axes, label: str, log: bool, rows: int) -> None:
 def _figure_beside(axes: Axes, row: int, words: str, colour: str = palette.INK) -> None:
     """A number at the right of a row."""
     axes.annotate(
-        words, (1.0, row), xycoords=("axes fraction", "data"), xytext=(3.0, 0.0),
+        words, (1.0, row), xycoords=("axes fraction", "data"), xytext=(5.0, 0.0),
         textcoords="offset points", va="center", fontsize=SMALL, color=colour,
         annotation_clip=False,
     )  # fmt: skip
