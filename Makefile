@@ -23,7 +23,7 @@ help:
 	@echo "make pictures  the pictures of README and playground anew (needs chromium)"
 	@echo "make dist    wheel and source distribution in dist"
 	@echo "make suites  the suites movingai (needs DYNASTAR_DATA) and paper; JSON in out/suites"
-	@echo "make paper   the paper's tables and figures, and those of docs/paper.md; nearly three hours"
+	@echo "make paper   the paper's tables and figures, and those of docs/paper.md; two and a half hours"
 	@echo "make bench   how fast it is, beside others, in an environment of its own"
 	@echo "make clean   remove .venv, out and caches"
 

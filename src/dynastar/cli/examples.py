@@ -45,7 +45,7 @@ examples:
             maze, office; corner to corner), and over a tenth as many of 512 x 512; 2 minutes
   table3    the improved A* alone against the hybrid, in the own world and over worlds of 20 x 20 cells
             with unknown blocks and a mover, by the presets default and paper, and a tenth of them as
-            printed; 50 minutes for 1000
+            printed; 40 minutes for 1000
   ablation  each term of Eqs. 2 and 9 left out or read otherwise, and each part of the whole, on worlds
             of the suites paper and people; 2 hours for 100 of each
   figures   Figs. 1 to 8; 10 seconds
