@@ -44,7 +44,7 @@ check: setup
 	$(BIN)/lint-imports
 
 test: setup
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 --dist worksteal
 	@$(MAKE) --no-print-directory test-ros
 
 # In an environment of its own: the wheels of ROS 2 start Python anew to find their libraries.
@@ -81,7 +81,7 @@ test-all: dist
 	$$venv/bin/python -m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps dist/*.whl \
 	&& $$venv/bin/python -m pip install --quiet --disable-pip-version-check "$$(echo dist/*.whl)[dev]" \
 	&& (cd $$venv && bin/dynastar demo --out demo --no-gif) \
-	&& $$venv/bin/python -m pytest -n 2 || { echo "Python $$version: failed"; exit 1; }; \
+	&& $$venv/bin/python -m pytest -n 2 --dist worksteal || { echo "Python $$version: failed"; exit 1; }; \
 	echo "Python $$version: passed"; done
 
 demo: setup
