@@ -36,6 +36,12 @@ def test_kernels_are_kept_there_even_if_numba_was_imported_before(tmp_path):
     assert list((tmp_path / "dynastar").rglob("*.nbi"))
 
 
+def test_an_empty_cache_folder_is_none(tmp_path):
+    code = "import os; os.environ['NUMBA_CACHE_DIR'] = ''; from dynastar import compiled as c; "
+    told = run(code + "print(c.folder())", tmp_path).stdout
+    assert told.startswith(str(tmp_path / "dynastar"))
+
+
 def test_the_folder_is_named_after_the_sources_and_where_they_are(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     before = compiled.digest()

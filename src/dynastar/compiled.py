@@ -87,7 +87,7 @@ def _temporary() -> Path:
     return Path(tempfile.mkdtemp(prefix=f"{ROOM}-"))
 
 
-if "NUMBA_CACHE_DIR" not in os.environ:
+if not os.environ.get("NUMBA_CACHE_DIR"):
     os.environ["NUMBA_CACHE_DIR"] = str(caches() / digest())
 
 import llvmlite.ir as ir  # noqa: E402 (numba reads the variable when it is imported)
