@@ -22,12 +22,17 @@ def test_the_heading_term_of_equation_8(theta, bearing):
 def test_the_other_terms_are_scaled_to_one():
     assert o.progress(1.0, 2.0) == 0.5
     assert o.progress(-3.0, 2.0) == -1.0
-    assert o.progress(9.0, 2.0) == 1.0
     assert (o.dist(0.1, 0.4), o.dist(9.0, 0.4), o.dist(-0.2, 0.4)) == pytest.approx(
         (0.25, 1.0, -0.5)
     )
     assert o.vel(0.5, 2.0) == 0.25
     assert (o.simi(0.0, 0.5), o.simi(0.25, 0.5), o.simi(2.0, 0.5)) == (1.0, 0.5, 0.0)
+
+
+@given(st.floats(0.1, 50), st.floats(0.01, 50), st.floats(0.1, 10))
+@settings(deadline=None)
+def test_more_progress_always_scores_more(gained, more, scale):
+    assert o.progress(gained + more, scale) > o.progress(gained, scale)
 
 
 @given(

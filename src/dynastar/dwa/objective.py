@@ -20,10 +20,11 @@ def heading(theta, bearing):
 def progress(gained, scale):
     """Decrease of the cost-to-go over a trajectory (m) over the most it could be (``scale``, m).
 
-    From -1 to 1: to be driven off near the goal is no worse than anywhere else, and to get out of
-    the path of a moving obstacle scores no more than driving on.
+    At least -1: being driven off near the goal is no worse than anywhere else. No upper bound: near
+    obstacles the cost-to-go falls by more than a metre a metre, and with an upper bound all
+    manoeuvres score alike there, those that put driving off included.
     """
-    return min(max(gained / scale, -1.0), 1.0)
+    return max(gained / scale, -1.0)
 
 
 @njit(cache=True)
