@@ -1,11 +1,16 @@
 import math
 
+import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from dynastar.geometry import Pose2D, Twist
-from dynastar.navigator.braking import StopProfile
-from dynastar.robot import Limits, arc, slew, stopping_time
+from dynastar.grid import OccupancyGrid
+from dynastar.navigator import Navigator, NavigatorConfig, RobotState
+from dynastar.navigator.braking import Commands, StopProfile
+from dynastar.robot import ROBOTS, Limits, arc, slew, stopping_time
+from dynastar.simulation import Scenario, World
 
 PARTS = 20
 
@@ -61,3 +66,45 @@ def test_braking_is_never_harder_than_the_limits(limits, v, omega):
         assert abs(command.omega - twist.omega) <= limits.omega_brake * 0.1 + 1e-9
         assert abs(command.v) <= abs(twist.v) + 1e-9
         twist = command
+
+
+@given(
+    limits_,
+    st.tuples(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0)),
+    st.tuples(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0)),
+)
+def test_the_next_command_goes_on_from_the_last_one_near_the_measured_speed(limits, sent, measured):
+    commands, period = Commands(limits, 0.1, 0.0), 0.1
+    sent, measured = Twist(*sent), Twist(*measured)
+    commands.send(RobotState(0.0, Pose2D(0.0, 0.0, 0.0), measured), sent)
+    twist = commands.carried_on(measured)
+    near_v = 0.08 * limits.v_max + limits.v_brake * period
+    near_omega = 0.1 * limits.omega_max + limits.omega_brake * period
+    assert abs(twist.v - measured.v) <= near_v + 1e-12
+    assert abs(twist.omega - measured.omega) <= near_omega + 1e-12
+    if abs(sent.v - measured.v) <= near_v:
+        assert twist.v == sent.v
+    if abs(sent.omega - measured.omega) <= near_omega:
+        assert twist.omega == sent.omega
+
+
+HALL = OccupancyGrid(np.pad(np.zeros((158, 398), np.int8), 1, constant_values=100), 0.05)
+
+
+@pytest.mark.parametrize(
+    ("drive_gain", "odometry_gain"), [(1.05, 1.0), (0.92, 1.0), (1.0, 1.03), (1.03, 0.98)]
+)
+def test_a_drive_that_is_a_few_per_cent_off_arrives_without_contact(drive_gain, odometry_gain):
+    robot = ROBOTS["paper"]
+    world = World(Scenario("hall", HALL, robot, (2.0, 4.0, 0.0), ()), Pose2D(2.0, 4.0, 0.0))
+    navigator = Navigator(HALL, robot, NavigatorConfig())
+    navigator.set_goal((15.0, 4.0))
+    while not world.contact and world.time < 45.0:
+        twist = Twist(*(odometry_gain * speed for speed in world.twist))
+        command = navigator.command(RobotState(world.time, world.pose, twist), world.scan())
+        world.step(Twist(*(drive_gain * speed for speed in command)), 0.1)
+        if navigator.status.state == "arrived" and world.resting:
+            break
+    assert not world.contact
+    assert navigator.status.state == "arrived"
+    assert math.dist(world.pose[:2], (15.0, 4.0)) < 0.3

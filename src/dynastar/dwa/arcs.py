@@ -88,7 +88,7 @@ def first_contact(scene, rules, arcs, pose, sample, terms, worst):
 
 
 @njit(cache=True)
-def search_arcs(scene, rules, arcs, state, n, buffers):
+def search_arcs(scene, rules, arcs, state, stop_from, n, buffers):
     """Scores the admissible of ``n`` samples by Eq. 9 and returns the best, or -1.
 
     ``buffers`` as in ``search``.
@@ -109,7 +109,9 @@ def search_arcs(scene, rules, arcs, state, n, buffers):
         )
         refused[i] = ADMISSIBLE
         if not arcs.printed_stop:
-            refused[i] = refusal(scene, rules, state, (commands[i, 0], commands[i, 1]))
+            refused[i] = refusal(
+                scene, rules, (pose, stop_from[0], stop_from[1]), (commands[i, 0], commands[i, 1])
+            )
             if refused[i] != ADMISSIBLE:
                 continue
         length, angle = first_contact(scene, rules, arcs, pose, sample, terms[i], worst)

@@ -98,6 +98,14 @@ class Choice:
     limited_by: str
 
 
+def _greater(twist: Twist, measured: Twist | None) -> tuple[float, float]:
+    """The greater of two twists' speeds, each by its magnitude."""
+    if measured is None:
+        return twist.v, twist.omega
+    v, omega = (max(pair, key=abs) for pair in zip(twist, measured, strict=True))
+    return v, omega
+
+
 class DynamicWindow:
     """One robot's dynamic window; its buffers are made once."""
 
@@ -144,8 +152,13 @@ class DynamicWindow:
             config.arcs.normalise == "sums",
         )
 
-    def choose(self, pose: Pose2D, twist: Twist, scene: Scene) -> Choice:
-        """The best admissible command from ``pose`` and ``twist``."""
+    def choose(
+        self, pose: Pose2D, twist: Twist, scene: Scene, measured: Twist | None = None
+    ) -> Choice:
+        """The best admissible command from ``pose`` and ``twist``.
+
+        Stops are certified from the greater of ``twist`` and the ``measured`` twist, if there is one.
+        """
         config, limits = self.config, self.robot.limits
         window = dynamic_window(*twist, limits, min(scene.v_cap, limits.v_max), self._reach)
         samples, speeds, rates = self._buffers[0], self._speeds, self._rates
@@ -155,24 +168,28 @@ class DynamicWindow:
             n = sample_multiples(window, speeds, rates, steps, most, samples)
         else:
             n = sample_window(window, speeds, rates, *most, samples)
-        return self._search(pose, twist, scene, n)
+        return self._search(pose, twist, _greater(twist, measured), scene, n)
 
-    def survey(self, pose: Pose2D, twist: Twist, scene: Scene) -> Choice:
+    def survey(
+        self, pose: Pose2D, twist: Twist, scene: Scene, measured: Twist | None = None
+    ) -> Choice:
         """As ``choose``, with the scores of all admissible samples, also of those that cannot win."""
         before, self.complete = self.complete, True
         try:
-            return self.choose(pose, twist, scene)
+            return self.choose(pose, twist, scene, measured)
         finally:
             self.complete = before
 
-    def _search(self, pose: Pose2D, twist: Twist, scene: Scene, n: int) -> Choice:
+    def _search(
+        self, pose: Pose2D, twist: Twist, stop_from: tuple[float, float], scene: Scene, n: int
+    ) -> Choice:
         """The best of the ``n`` samples in the buffers."""
         samples, commands, holds, tails, terms, refused, score = self._buffers
         state = ((pose.x, pose.y, math.cos(pose.theta), math.sin(pose.theta)), *twist)
         if self.config.search == "arcs":
-            best = search_arcs(scene, self._rules, self._arcs, state, n, self._buffers)
+            best = search_arcs(scene, self._rules, self._arcs, state, stop_from, n, self._buffers)
         else:
-            best = search(scene, self._rules, state, n, self._buffers, not self.complete)
+            best = search(scene, self._rules, state, stop_from, n, self._buffers, not self.complete)
             n += 2
         refused = refused[:n].copy()
         counts = np.bincount(refused, minlength=max(REFUSALS) + 1)
@@ -216,9 +233,17 @@ class DynamicWindow:
         most = int(np.bincount(codes).argmax())
         return REFUSALS.get(most, "score")
 
-    def admits(self, pose: Pose2D, twist: Twist, scene: Scene, command: Twist) -> bool:
-        """Whether a command from outside the search is admissible."""
-        state = ((pose.x, pose.y, math.cos(pose.theta), math.sin(pose.theta)), *twist)
+    def admits(
+        self,
+        pose: Pose2D,
+        twist: Twist,
+        scene: Scene,
+        command: Twist,
+        measured: Twist | None = None,
+    ) -> bool:
+        """Whether a command from outside the search is admissible; twists as in ``choose``."""
+        stop_from = _greater(twist, measured)
+        state = ((pose.x, pose.y, math.cos(pose.theta), math.sin(pose.theta)), *stop_from)
         rest = self.robot.limits, state, (float(command.v), float(command.omega)), self.period
         for check in (admissible.certified_stop, admissible.rests_in_time):
             if check(scene, self.body, *rest) != admissible.ADMISSIBLE:

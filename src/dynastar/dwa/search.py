@@ -53,8 +53,11 @@ def refusal(scene, rules, state, command):
 
 
 @njit(cache=True)
-def prepare(scene, rules, state, n, buffers):
-    """Writes the last two candidates, the commands of all n + 2, and why they are refused."""
+def prepare(scene, rules, state, stop_from, n, buffers):
+    """Writes the last two candidates, the commands of all n + 2, and why they are refused.
+
+    ``stop_from`` (v, omega) are the speeds from which stops are certified.
+    """
     limits, comfort, period = rules.limits, rules.span.comfort, rules.period
     samples, commands, refused = buffers[0], buffers[1], buffers[5]
     pose, v, omega = state
@@ -69,7 +72,9 @@ def prepare(scene, rules, state, n, buffers):
         samples[i, 0] = min(max(samples[i, 0], slowest), fastest)
         commands[i, 0] = slew(v, samples[i, 0], limits.v_accel, limits.v_brake, period)
         commands[i, 1] = slew(omega, samples[i, 1], limits.omega_accel, limits.omega_brake, period)
-        refused[i] = refusal(scene, rules, state, (commands[i, 0], commands[i, 1]))
+        refused[i] = refusal(
+            scene, rules, (pose, stop_from[0], stop_from[1]), (commands[i, 0], commands[i, 1])
+        )
 
 
 @njit(cache=True)
@@ -138,7 +143,7 @@ def stops_in_the_way(scene, rules, state, scale):
 
 
 @njit(cache=True, nogil=True)
-def search(scene, rules, state, n, buffers, bounded):
+def search(scene, rules, state, stop_from, n, buffers, bounded):
     """Scores the admissible of ``n`` samples by Eq. 9 and returns the best, or -1.
 
     Where a command does not rest in time before moving obstacles by their hard bound, a manoeuvre
@@ -150,7 +155,8 @@ def search(scene, rules, state, n, buffers, bounded):
     (n), looked at first, and following the cost-to-go at once (n + 1). Every change from the former
     has to be worth something. ``buffers`` are samples, commands (n + 2, 2), holds in seconds and tails
     (n + 2,), terms (n + 2, 5), refusals and scores (n + 2,). Where it is not ``bounded``, candidates
-    that cannot be the best are rolled out to their end, too.
+    that cannot be the best are rolled out to their end, too. Stops are certified from the speeds
+    ``stop_from`` (v, omega).
     """
     limits, span = rules.limits, rules.span
     pose, v, _ = state
@@ -160,7 +166,7 @@ def search(scene, rules, state, n, buffers, bounded):
     for look in range(1, LOOKS + 1):
         most += min(farthest(max(v, 0.0), limits, look * between), begin) / LOOKS
     scale = (begin, max(most, LEAST))
-    prepare(scene, rules, state, n, buffers)
+    prepare(scene, rules, state, stop_from, n, buffers)
     best = best_of(scene, rules, state, (n, bounded), buffers, scale, False)
     if best < 0 and stops_in_the_way(scene, rules, state, scale):
         best = best_of(scene, rules, state, (n, bounded), buffers, scale, True)

@@ -10,6 +10,8 @@ from dynastar.navigator.status import RobotState
 from dynastar.robot import Limits, slew, stopping_time
 
 REST = Twist(0.0, 0.0)
+V_TOLERANCE = 0.08  # of v_max that the measured speed may be off the commanded one
+OMEGA_TOLERANCE = 0.1  # of omega_max, the same for the turning rate
 
 
 class StopProfile:
@@ -90,6 +92,20 @@ class Commands:
             self.limits,
         )
         return Pose2D(x, y, theta), Twist(v, omega)
+
+    def carried_on(self, measured: Twist) -> Twist:
+        """The twist from which the next command goes on: the last command, near the measured twist.
+
+        A drive or odometry that is a few per cent off would else eat what a command may change in a
+        period. What cannot be told from such an error is bounded: a share of the highest speed, and
+        what the robot brakes by in a period.
+        """
+        limits, period = self.limits, self.period
+        off_v = V_TOLERANCE * limits.v_max + limits.v_brake * period
+        off_omega = OMEGA_TOLERANCE * limits.omega_max + limits.omega_brake * period
+        v = min(max(self._last.v, measured.v - off_v), measured.v + off_v)
+        omega = min(max(self._last.omega, measured.omega - off_omega), measured.omega + off_omega)
+        return Twist(v, omega)
 
     def send(self, state: RobotState, command: Twist | None) -> Twist:
         """Notes a command that has a certified stop; None carries the last one's stop on."""

@@ -80,7 +80,7 @@ class Navigator:
         self.mission = Mission()
         self._planner = planner
         self._choice: Choice | None = None
-        self._asked: tuple[Pose2D, Twist, Scene] | None = None
+        self._asked: tuple[Pose2D, Twist, Scene, Twist] | None = None
         self._commands = Commands(robot.limits, config.period, config.latency)
         self.planning_map = self._planning_map_of(grid)
         self.route = Route(self.planning_map, self.mission, config)
@@ -225,16 +225,17 @@ class Navigator:
 
     def _decide(self, state: RobotState, movers: Sequence[MovingObstacle] | None) -> Twist | None:
         """The command, by the dynamic window or to turn to the goal's heading; None to stop."""
-        pose, twist = self._commands.when_one_acts(state)
+        pose, measured = self._commands.when_one_acts(state)
+        twist = self._commands.carried_on(measured)
         scene = self._scene(state, pose, movers)
         goal = self.mission.goals[0]
         if self.route.path is not None and goal.heading is not None and self._near(goal, pose):
             self.mission.say("turning", "to the goal's heading")
             self._last = AT_REST
             command = self._turned(pose, twist, goal.heading)
-            return command if self.window.admits(pose, twist, scene, command) else None
-        self._asked = pose, twist, scene
-        choice = self._choice = self.window.choose(pose, twist, scene)
+            return command if self.window.admits(pose, twist, scene, command, measured) else None
+        self._asked = pose, twist, scene, measured
+        choice = self._choice = self.window.choose(*self._asked)
         self._last = choice.left
         self._judge(state, choice, len(scene.people.now) > 0)
         return choice.command if self.mission.under_way else None
