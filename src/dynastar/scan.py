@@ -39,13 +39,11 @@ class LaserScan:
         beams = np.arange(len(self.ranges), dtype=np.float64)
         return np.asarray(self.angle_min + self.angle_increment * beams)
 
-    def fault(self, beams: int | None = None) -> str | None:
-        """Describe why this scan is unusable, or None; ``beams`` is the number expected."""
+    def fault(self) -> str | None:
+        """Describe why this scan is unusable, or None. Its number of beams may differ each time."""
         n = len(self.ranges)
-        if n == 0:
-            return "the scan has no beams"
-        if beams is not None and n != beams:
-            return f"the scan has {n} beams: expected {beams}"
+        if n < 2:
+            return f"the scan has {n or 'no'} beam{'s' if n == 0 else ''}: expected 2 or more"
         numbers = (self.stamp, self.angle_min, self.angle_increment, *self.mount)
         if not all(map(math.isfinite, numbers)):
             return "the scan's stamp, angles or mount are not finite"

@@ -79,14 +79,29 @@ def test_a_scan_from_the_future_is_not_used():
     assert "1.000 s ahead of the robot's state" in drive.status.reason
 
 
-@pytest.mark.parametrize("beams", [0, 1, 100, 361])
-def test_a_scan_of_another_size_is_not_used(beams):
+@pytest.mark.parametrize(("beams", "words"), [(0, "no beams"), (1, "1 beam:")])
+def test_a_scan_without_an_angle_between_beams_is_not_used(beams, words):
     drive = under_way()
     for _ in range(30):
         drive.tick(with_ranges(drive.scan(), np.full(beams, 6.0)))
     assert drive.twist == REST
     assert drive.status.state == "sensor_lost"
-    assert "beams" in drive.status.reason
+    assert words in drive.status.reason
+
+
+@pytest.mark.parametrize(("low", "high"), [(223, 240), (355, 365), (700, 1400)])
+def test_a_lidar_whose_number_of_readings_changes_is_used(low, high):
+    """Some drivers send what one turn gave, which differs from turn to turn."""
+    drive, random = Drive(room()), np.random.default_rng(0)
+    drive.navigator.set_goal(Goal(6.5, 3.0))
+    states = set()
+    while drive.status.state != "arrived":
+        assert drive.now < 20.0
+        beams = int(random.integers(low, high + 1))
+        lidar = LidarSimulator(Lidar(beams, math.tau, 0.0, 6.0), room())
+        drive.tick(lidar.scan(drive.pose, drive.now))
+        states.add(drive.status.state)
+    assert "sensor_lost" not in states
 
 
 @pytest.mark.parametrize("reading", [math.nan, 0.0, -1.0, -math.inf, 1e30])

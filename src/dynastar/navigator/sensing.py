@@ -32,7 +32,6 @@ class Sensing:
         self.local_map = LocalMap(config.local_map)
         self.tracker = Tracker(config.tracker, config.range_error, config.heading_error)
         self._poses: deque[RobotState] = deque()
-        self._beams: dict[Pose2D, int] = {}
         self._seen: dict[Pose2D, float] = {}  # the newest stamp of each sensor
         self._taken: dict[Pose2D, tuple[npt.NDArray[np.floating], Pose2D]] = {}
         self._fresh = True
@@ -90,7 +89,7 @@ class Sensing:
             if not isinstance(scan, LaserScan):
                 fault = f"a scan is {scan!r:.40}: expected a LaserScan"
                 continue
-            wrong = scan.fault(self._beams.get(scan.mount))
+            wrong = scan.fault()
             if wrong is None and scan.stamp > now + 0.5 * self.config.period:
                 wrong = f"the scan is {scan.stamp - now:.3f} s ahead of the robot's state"
                 ahead = max(ahead, scan.stamp - now)
@@ -152,7 +151,6 @@ class Sensing:
         return None
 
     def _see(self, scan: LaserScan, known: Known) -> None:
-        self._beams.setdefault(scan.mount, len(scan.ranges))
         self._seen[scan.mount] = scan.stamp
         sensor = compose(self._pose_at(scan.stamp), scan.mount)
         limits, angles = (scan.range_min, scan.range_max), (scan.angle_min, scan.angle_increment)

@@ -182,7 +182,7 @@ class PathController(ABC):
         self._poses.append(state)
         if scan is None:
             return None
-        wrong = scan.fault(self.robot.lidar.beams)
+        wrong = scan.fault()
         if wrong is None and scan.stamp > state.stamp + CLOCKS:
             wrong = "the scan is ahead of the state"
         if wrong is None and np.isnan(scan.ranges).all():
