@@ -6,9 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.errors import InputError
 from dynastar.geometry import Pose2D
 
 LEAST_INCREMENT = 1e-5  # rad
+NUMBERS = "stamp", "angle_min", "angle_increment", "range_min", "range_max"
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,6 +20,7 @@ class LaserScan:
     ``ranges`` (n,) metres: beam i points at ``angle_min + i * angle_increment`` in the sensor's
     frame. +inf is "nothing up to range_max"; NaN, -inf, 0 and readings below range_min say nothing.
     ``mount`` is the sensor's pose on the robot; ``stamp`` the time in seconds of the whole scan.
+    Raises InputError for what is not a number.
     """
 
     stamp: float
@@ -29,7 +32,13 @@ class LaserScan:
     mount: Pose2D = Pose2D(0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
-        ranges = np.array(self.ranges, dtype=np.float32).reshape(-1)
+        try:
+            ranges = np.array(self.ranges, dtype=np.float32).reshape(-1)
+            for name in NUMBERS:  # kernels would be compiled again for an int
+                object.__setattr__(self, name, float(getattr(self, name)))
+            object.__setattr__(self, "mount", Pose2D(*map(float, self.mount)))
+        except (TypeError, ValueError, OverflowError) as error:
+            raise InputError(f"a scan of {self.ranges!r:.40}: {error}; expected numbers") from None
         ranges.flags.writeable = False
         object.__setattr__(self, "ranges", ranges)
 

@@ -4,12 +4,16 @@ import math
 
 import numpy as np
 import pytest
+from numba.core import event
 
 from driving import under_way, with_ranges
 from dynastar.bench.runner import Options
 from dynastar.bench.suites import faults
-from dynastar.geometry import Twist
+from dynastar.errors import InputError
+from dynastar.geometry import Pose2D, Twist
+from dynastar.navigator import RobotState
 from dynastar.navigator.braking import Commands
+from dynastar.scan import LaserScan
 from dynastar.simulation import drive
 
 MISSIONS = [m for m in faults.missions(Options()) if m.spec.fraction == 0.4]
@@ -52,3 +56,51 @@ def test_the_same_ranges_again_are_news_to_a_robot_that_stands():
         going.navigator.command(state, with_ranges(going.scan(), ranges))
         going.now += 0.1
         assert going.status.state != "sensor_lost"
+
+
+class Compilations(event.Listener):
+    """Counts the kernels that numba compiles."""
+
+    def __init__(self):
+        self.kernels = []
+
+    def on_start(self, event):
+        self.kernels.append(event.data["dispatcher"].py_func.__qualname__)
+
+    def on_end(self, event):
+        pass
+
+
+def test_numbers_of_any_type_compile_nothing():
+    going = under_way()
+    stamp, pose, _ = going.state
+    scan = going.scan()
+    compilations = Compilations()
+    with event.install_listener("numba:compile", compilations):
+        for k, twist in enumerate([Twist(1, 0), Twist(np.float32(0.5), 0), (0, 0), np.zeros(2)]):
+            now = int(stamp) + 1 + k
+            ints = [np.int64(round(number)) for number in pose]
+            given = LaserScan(now, scan.ranges, -3, scan.angle_increment, 0, 6, Pose2D(0, 0, 0))
+            going.navigator.command(RobotState(now, Pose2D(*ints), twist), given)
+            going.navigator.command(RobotState(now + np.float32(0.25), Pose2D(*ints), twist), given)
+    assert going.status.state != "sensor_lost"
+    assert compilations.kernels == []
+
+
+@pytest.mark.parametrize(
+    "state",
+    [None, 3.0, (1.0, 2.0), "state", RobotState(0.0, None, None), RobotState(0.0, (1, 2), (3, 4))],
+)
+def test_what_is_not_a_state_brakes_and_says_what_is_expected(state):
+    going = under_way()
+    command = going.navigator.command(state, going.scan())
+    assert 0.0 <= command.v < going.twist.v
+    assert going.status.state == "sensor_lost"
+    assert "expected a stamp, a pose and a twist" in going.status.reason
+
+
+def test_a_scan_of_words_is_refused_when_it_is_made():
+    with pytest.raises(InputError, match="expected numbers"):
+        LaserScan("now", np.ones(9), 0.0, 0.1, 0.0, 1.0)
+    with pytest.raises(InputError, match="expected numbers"):
+        LaserScan(0.0, ["near", "far"], 0.0, 0.1, 0.0, 1.0)

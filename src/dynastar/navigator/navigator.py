@@ -24,7 +24,7 @@ from dynastar.navigator.planning_map import PlanningMap
 from dynastar.navigator.progress import Progress
 from dynastar.navigator.replanning import Route
 from dynastar.navigator.sensing import Sensing
-from dynastar.navigator.status import RobotState, Status
+from dynastar.navigator.status import RobotState, Status, as_floats
 from dynastar.navigator.warm_up import ROOM, Straight, drive_a_little
 from dynastar.path import Path
 from dynastar.perception import MovingObstacle
@@ -186,7 +186,7 @@ class Navigator:
     ) -> Twist:
         """The twist to drive from now on; ``movers`` replaces what the tracker finds in the scans."""
         self._choice, self._asked = None, None
-        state, mission = self._within_limits(state), self.mission
+        state, mission = self._within_limits(as_floats(state)), self.mission
         fault = self._perceive(state, scan)
         if fault is not None:
             mission.lose(fault)

@@ -61,7 +61,9 @@ class Sensing:
     def place(self, state: RobotState) -> str | None:
         """Takes in where the robot is; what is wrong with that, in words, or None."""
         if not all(math.isfinite(number) for number in (state.stamp, *state.pose, *state.twist)):
-            return "the robot's state is not finite"
+            return (
+                "the robot's state is not finite: expected a stamp, a pose and a twist of numbers"
+            )
         if max(abs(state.pose.x), abs(state.pose.y)) > FARTHEST:
             return (
                 f"the robot's pose is ({state.pose.x:g}, {state.pose.y:g}): expected within 1e6 m"

@@ -1,5 +1,6 @@
 """What goes into a navigator and what it tells: the robot's state, and the status of a tick."""
 
+import math
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, get_args
 
@@ -23,6 +24,23 @@ class RobotState(NamedTuple):
     stamp: float
     pose: Pose2D
     twist: Twist
+
+
+NO_STATE = RobotState(math.nan, Pose2D(math.nan, math.nan, math.nan), Twist(math.nan, math.nan))
+
+
+def as_floats(state: RobotState) -> RobotState:
+    """The state with every number a float, all NaN if it is not a state at all.
+
+    Kernels would be compiled again for an int: ``Twist(0.1, 0)``.
+    """
+    try:
+        stamp, (x, y, theta), (v, omega) = state
+        return RobotState(
+            float(stamp), Pose2D(float(x), float(y), float(theta)), Twist(float(v), float(omega))
+        )
+    except (TypeError, ValueError, OverflowError):
+        return NO_STATE
 
 
 @dataclass(frozen=True)
