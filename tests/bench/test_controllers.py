@@ -45,7 +45,7 @@ def driven(scenario, controller="pure_pursuit"):
 def test_the_navigator_is_the_default():
     assert controller_named("navigator") is None
     assert controller_named("pure_pursuit") is PurePursuit
-    assert set(BUILT_IN) == {"navigator", "pure_pursuit", "kompass_dwa"}
+    assert set(BUILT_IN) == {"navigator", "pure_pursuit", "printed", "kompass_dwa"}
 
 
 def test_a_class_of_ones_own_is_imported(monkeypatch):

@@ -216,7 +216,7 @@ def _add_bench(commands: "argparse._SubParsersAction[OneLineParser]") -> None:
         "--controller",
         default="navigator",
         metavar="NAME",
-        help="navigator (the default), pure_pursuit, kompass_dwa, or a class as MODULE:CLASS",
+        help="navigator (the default), pure_pursuit, printed, kompass_dwa, or MODULE:CLASS",
     )
     _add_set(bench)
     bench.add_argument(

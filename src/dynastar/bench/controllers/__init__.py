@@ -26,6 +26,7 @@ from dynastar.errors import ConfigError
 BUILT_IN = {
     "navigator": "",
     "pure_pursuit": "dynastar.bench.controllers.pure_pursuit:PurePursuit",
+    "printed": "dynastar.bench.controllers.printed:Printed",
     "kompass_dwa": "dynastar.bench.controllers.kompass:KompassDwa",
 }
 NEEDED = ("set_goal", "command")

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from dynastar.bench.controllers.costmap import Costmap, Surroundings, covering
-from dynastar.bench.controllers.route import Route
+from dynastar.bench.controllers.route import PlannedPath, Route
 from dynastar.bench.controllers.status import Status
 from dynastar.errors import InputError, PlanningError
 from dynastar.geometry import Goal, Pose2D, Twist, wrap_angle
@@ -23,9 +23,7 @@ REST = Twist(0.0, 0.0)
 SCAN_AGE = 0.3  # s, older data stop the robot
 CLOCKS = 0.1  # s that a scan may be ahead of the state
 HISTORY = 40  # poses kept to place late scans by
-STUCK_AFTER = 4.0  # s without progress until a recovery
 PROGRESS = 0.3  # m that count as progress
-RETRIES = 12  # recoveries without progress until the goal is given up
 BACK_UP = (0.4, 0.15)  # m and m/s of backing up
 
 
@@ -36,6 +34,9 @@ class PathController(ABC):
     forgets what was seen, then backs up, in turns, as the behaviours of Nav2 do. Commands ramp
     within the robot's limits from the last command on.
     """
+
+    stuck_after = 4.0  # s without progress until a recovery
+    retries = 12  # recoveries without progress until the goal is given up
 
     def __init__(self, grid: OccupancyGrid, robot: Robot, config: Any) -> None:
         self.robot, self.config = robot, config
@@ -53,8 +54,12 @@ class PathController(ABC):
     def set_map(self, grid: OccupancyGrid) -> None:
         """Another map; what was seen is forgotten."""
         self.costmap = Costmap(grid, self.config.unknown)
-        self.route = Route(self.costmap, self.robot)
+        self.route = self.make_route()
         self.status = replace(self.status, planning_frame=self.costmap.grid.frame)
+
+    def make_route(self) -> PlannedPath:
+        """The path on the costmap."""
+        return Route(self.costmap, self.robot)
 
     def set_goal(self, goal: Goal | Sequence[Goal]) -> None:
         """One goal, or several to reach in order."""
@@ -136,14 +141,14 @@ class PathController(ABC):
         """Starts a recovery after a while in one place, and gives up after many."""
         here, now = state.pose, state.stamp
         if self._anchor is None or math.dist(here[:2], self._anchor[1][:2]) > PROGRESS:
-            if self._anchor is not None and now >= self._backing_until + STUCK_AFTER:
+            if self._anchor is not None and now >= self._backing_until + self.stuck_after:
                 self._failed = 0
             self._anchor = (now, here)
-        if now - self._anchor[0] < STUCK_AFTER:
+        if now - self._anchor[0] < self.stuck_after:
             return
         self._anchor = (now, here)
         self._failed += 1
-        if self._failed > RETRIES:
+        if self._failed > self.retries:
             self._say("blocked", "no progress, whatever was tried")
             return
         if self._failed % 2 == 0 and self.robot.limits.v_min < 0.0:

@@ -33,6 +33,7 @@ class Costmap:
         factor = max(1, round(grid.resolution / FINEST))
         while factor > 1 and grid.rows * grid.columns * factor**2 > MOST_CELLS:
             factor -= 1
+        self.factor = factor  # cells to the side of a cell of the map
         self.grid = grid.refined(factor)
         self.resolution = self.grid.resolution
         self._static = self.grid.blocked(unknown)

@@ -1,6 +1,8 @@
 """The global path of a controller: planned on its costmap, and planned anew every second."""
 
 import math
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from contextlib import suppress
 
 import numpy as np
@@ -21,19 +23,20 @@ DETOURS = (1.2, 1.5)  # over the narrow path's length, the longest that such a p
 SHORTER = 0.9  # a new path replaces a clear one only where it is that much shorter
 
 
-class Route:
-    """Plans with the circumscribed radius and some room, or narrowly where that is far round."""
+class PlannedPath(ABC):
+    """A path planned on a costmap; a subclass says in ``update`` when it is planned.
 
-    def __init__(self, costmap: Costmap, robot: Robot) -> None:
-        shape, config = robot.footprint, PlannerConfig(planner="auto")
-        self._costmap = costmap
-        self._narrow = shape.inscribed + PADDING
-        radii = (*(shape.circumscribed + room for room in ROOMS), self._narrow)
-        self._planners = [GridPlanner(costmap.grid, radius, "blocked", config) for radius in radii]
+    ``planners`` has a planner for each of ``radii`` (m). ``s`` (m) is how far along the path the
+    robot is.
+    """
+
+    def __init__(self, costmap: Costmap, radii: Sequence[float], config: PlannerConfig) -> None:
+        self.planners = [
+            GridPlanner(costmap.grid, radius, "blocked", config, costmap.factor) for radius in radii
+        ]
         self.mark((0, 0, costmap.blocked))
         self.plan: Plan | None = None
-        self.s = 0.0  # m along the path, where the robot is
-        self._planned_at = -math.inf
+        self.s = 0.0
 
     @property
     def path(self) -> Path | None:
@@ -42,18 +45,38 @@ class Route:
 
     def mark(self, window: tuple[int, int, Mask]) -> None:
         """Takes over cells of the costmap that changed."""
-        for planner in self._planners:
+        for planner in self.planners:
             planner.mark(*window)
 
     def drop(self) -> None:
         """Forgets the path, so that the next ``update`` plans."""
-        self.plan, self._planned_at = None, -math.inf
+        self.plan = None
 
+    @abstractmethod
     def update(self, here: tuple[float, float], goal: Goal, now: float) -> bool:
-        """Follows the path's progress and plans where needed; True for a new path.
+        """Follows the progress of the robot, ``here`` (m), and plans; True for a new path.
 
         Raises PlanningError where there is no path, and keeps none then.
         """
+
+
+class Route(PlannedPath):
+    """Plans with the circumscribed radius and some room, or narrowly where that is far round."""
+
+    def __init__(self, costmap: Costmap, robot: Robot) -> None:
+        shape = robot.footprint
+        self._narrow = shape.inscribed + PADDING
+        radii = (*(shape.circumscribed + room for room in ROOMS), self._narrow)
+        super().__init__(costmap, radii, PlannerConfig(planner="auto"))
+        self._planned_at = -math.inf
+
+    def drop(self) -> None:
+        """Forgets the path, so that the next ``update`` plans."""
+        super().drop()
+        self._planned_at = -math.inf
+
+    def update(self, here: tuple[float, float], goal: Goal, now: float) -> bool:
+        """Plans every second, and sooner where the path is blocked."""
         blocked = False
         if self.path is not None:
             self.s = self.path.project(*here, low=self.s - 0.3, high=self.s + 2.0)
@@ -80,10 +103,10 @@ class Route:
         if len(rest) == 0:
             return False
         ahead = np.vstack([self.path.at(self.s), rest])
-        return self._planners[-1].path_blocked_at(ahead, 0.9 * self._narrow) is not None
+        return self.planners[-1].path_blocked_at(ahead, 0.9 * self._narrow) is not None
 
     def _best(self, start: tuple[float, float], goal: tuple[float, float]) -> Plan:
-        *roomy, narrow = self._planners
+        *roomy, narrow = self.planners
         plan = narrow.plan(start, goal)
         for planner, detour in zip(roomy, DETOURS, strict=True):
             with suppress(PlanningError):
