@@ -5,7 +5,9 @@ import pytest
 
 from dynastar.bench import ablation, paper, terms
 from dynastar.bench.ablation import ARMS
+from dynastar.bench.controllers.printed import Printed
 from dynastar.bench.families import Map, draw
+from dynastar.bench.follower import Follower
 from dynastar.bench.runner import Mission, Options, choose_missions
 from dynastar.bench.statistics import wilson
 from dynastar.bench.suites import people
@@ -35,6 +37,7 @@ def test_each_arm_differs_from_the_default_as_it_says():
     heuristic = "planner.heuristic."
     expected = {
         "default": set(),
+        "printed": set(),
         "Eq. 2: k = 0": {heuristic + "k"},
         "no exact improvement": {"planner.exact"},
         "Eq. 9: alpha = 0": {"dwa.weights.heading"},
@@ -44,8 +47,6 @@ def test_each_arm_differs_from_the_default_as_it_says():
             f"dwa.weights.{name}" for name in ("heading", "dist", "vel", "simi")
         },
         "no risk": {"dwa.weights.risk"},
-        "bearing in place of cost-to-go": {"dwa.progress"},
-        "constant arcs, no tails": {"dwa.search"},
         "no hysteresis": {"dwa.hysteresis"},
         "window of one period": {"dwa.reach"},
         "3 x 6 samples": {"dwa.v_samples", "dwa.omega_samples"},
@@ -61,17 +62,17 @@ def test_each_arm_differs_from_the_default_as_it_says():
         "no reverse": {"reverse"},
         "period 0.05 s": {"period"},
         "period 0.2 s": {"period"},
-        "no replanning": {"global_path"},
         "path following alone": set(),
     }
     assert {arm: changed(settings(arm)) for arm in expected} == expected
     for preset in PRESETS:
         assert settings(preset) == PRESETS[preset]
-    assert [arm for arm in ARMS if ARMS[arm].follows] == ["path following alone"]
+    others = {arm: ARMS[arm].controller for arm in ARMS if ARMS[arm].controller is not None}
+    assert others == {"printed": Printed, "path following alone": Follower}
     for arm in (arm for arm in ARMS if arm.startswith("Eq. 2: ")):
         assert settings(arm)._replace(planner=DEFAULT.planner) == DEFAULT
         assert settings(arm).planner.exact
-    assert len({settings(arm) for arm in ARMS}) == len(ARMS) - 1  # the follower's are the default
+    assert len({settings(arm) for arm in ARMS}) == len(ARMS) - len(others)
 
 
 def test_of_eq_2_one_term_at_a_time_is_left_out():
@@ -105,15 +106,15 @@ def row(number, arm, outcome="arrived", length=30.0, time=60.0, **more):
 
 ROWS = [
     row(0, "default"),
-    row(0, "no replanning", length=33.0, time=90.0),
+    row(0, "no reverse", length=33.0, time=90.0),
     row(2, "default", length=40.0, time=100.0),
-    row(2, "no replanning", "blocked", 5.0, 50.0),
+    row(2, "no reverse", "blocked", 5.0, 50.0),
     row(4, "default", "contact", contacts_moving=1),
-    row(4, "no replanning", length=50.0, time=90.0),
+    row(4, "no reverse", length=50.0, time=90.0),
     row(5, "default", "timeout"),
-    {"suite": "paper", "number": 5, "arm": "no replanning", "outcome": "error", "reason": "E: x"},
+    {"suite": "paper", "number": 5, "arm": "no reverse", "outcome": "error", "reason": "E: x"},
     row(6, "default", length=50.0, time=50.0),
-    row(6, "no replanning", length=50.0, time=100.0),
+    row(6, "no reverse", length=50.0, time=100.0),
     row(0, "default", suite="people"),
 ]
 
@@ -121,15 +122,20 @@ ROWS = [
 def test_ratios_are_world_by_world_over_those_that_both_arrived_in():
     found = ablation.summary(ROWS)
     assert list(found) == ["paper", "people"]
-    assert list(found["paper"]) == ["default", "no replanning"]
-    default, once = found["paper"].values()
+    assert list(found["paper"]) == ["default", "no reverse"]
+    default, forward = found["paper"].values()
     assert (default["missions"], default["arrived"], default["contacts_moving"]) == (5, 3, 1)
     assert (default["timeouts"], default["length_ratio"], default["common"]) == (1, 1.0, 3)
-    assert (once["arrived"], once["blocked"], once["errors"], once["common"]) == (3, 1, 1, 2)
-    assert once["mean_time"] == pytest.approx(280.0 / 3)
-    assert once["length_ratio"] == pytest.approx((1.1 + 1.0) / 2)
-    assert once["time_ratio"] == pytest.approx((1.5 + 2.0) / 2)
-    low, high = once["time_ratio_interval"]
+    assert (forward["arrived"], forward["blocked"], forward["errors"], forward["common"]) == (
+        3,
+        1,
+        1,
+        2,
+    )
+    assert forward["mean_time"] == pytest.approx(280.0 / 3)
+    assert forward["length_ratio"] == pytest.approx((1.1 + 1.0) / 2)
+    assert forward["time_ratio"] == pytest.approx((1.5 + 2.0) / 2)
+    low, high = forward["time_ratio_interval"]
     assert (low, high) == pytest.approx((1.5, 2.0))
     assert default["touched_interval"] == wilson(1, 5)
     nothing = ablation.summary([row(0, "paper", "error")])["paper"]["paper"]
@@ -141,7 +147,7 @@ def test_ratios_are_world_by_world_over_those_that_both_arrived_in():
 def test_the_tables_have_a_line_for_each_arm_by_its_effect():
     worse = [row(n, "no risk", "contact", contacts_resting=1) for n in (0, 2)]
     of_paper, of_people = ablation.tables([*ROWS, *worse])
-    assert [cells[0] for cells in of_paper.cells[1:]] == ["default", "no risk", "no replanning"]
+    assert [cells[0] for cells in of_paper.cells[1:]] == ["default", "no risk", "no reverse"]
     assert of_paper.cells[3][-2:] == ["1.750", "1.50 to 2.00"]
     assert "5 worlds of the suite paper" in as_text(of_paper)
     assert len(of_people.cells) == 2

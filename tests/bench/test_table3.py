@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynastar.bench import paper, table3
+from dynastar.bench import ablation, paper, table3
+from dynastar.bench.controllers.printed import Printed
 from dynastar.bench.tables import as_markdown, as_text
 from dynastar.grid import OccupancyGrid
 from dynastar.planning import plan
@@ -116,19 +117,21 @@ def test_the_tables_have_the_printed_figures_beside():
 def test_rows_are_made_once_and_an_error_is_one(tmp_path, monkeypatch):
     flown = []
 
-    def drive(scenario):
-        flown.append((scenario.name, scenario.preset, scenario.seed))
+    def drive(scenario, navigator):
+        flown.append((scenario.name, scenario.preset, scenario.seed, navigator))
         raise RuntimeError("no")
 
-    monkeypatch.setattr(table3, "drive", drive)
+    monkeypatch.setattr(ablation, "drive", drive)
     rows = table3.run(3, 0, tmp_path / "out")
     assert [row["number"] for row in rows] == [0, 2, 4]  # 1 and 3 are left out by the rule
     assert [row["outcome"] for row in rows] == ["error"] * 3
     assert all(row["grid_length"] > 26.0 for row in rows)
     assert table3.run(4, 0, tmp_path / "out")[:3] == rows
     assert [name for name, *_ in flown] == ["paper 0", "paper 2", "paper 4", "paper 5"]
-    table3.run(1, 0, tmp_path / "out", preset="paper")
-    assert flown[-1] == ("paper 0", "paper", 0)
+    table3.run(1, 0, tmp_path / "out", arm="paper")
+    assert flown[-1] == ("paper 0", "paper", 0, None)
+    table3.run(1, 0, tmp_path / "out", arm="printed")
+    assert flown[-1] == ("paper 0", "default", 0, Printed)
 
 
 def test_the_hybrid_is_driven_as_the_suite_drives_it():

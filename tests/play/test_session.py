@@ -212,7 +212,7 @@ def test_a_weight_keeps_what_was_seen_and_a_preset_the_goals(field):
 
 
 def test_each_preset_drives_and_shows_its_candidates(field):
-    for preset in ("printed", "paper", "default"):
+    for preset in ("paper", "default"):
         ask(field, type="preset", preset=preset)
         drive(field, 1.0)
         assert len(field.navigator.survey().samples) > 20

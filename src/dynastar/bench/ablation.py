@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from dynastar.bench.arms import ARMS
-from dynastar.bench.follower import Follower
 from dynastar.bench.rows import collect, version
 from dynastar.bench.runner import Mission, Options, choose_missions, load_suite, row_of
 from dynastar.bench.settings import merged
@@ -21,8 +20,10 @@ from dynastar.simulation import run as drive
 
 BASE = "default"  # the arm that the others are compared with
 SUITES = ("paper", "people")
-SOURCES = ("ablation", "arms", "follower", "driven", "paper", "suites/people", "suites/people_crowd",
-           "suites/people_scripts", "suites/people_sites", "suites/people_witness",
+OF_ARMS = ("ablation", "arms", "follower", "paper", "own_maps", "controllers/printed",
+           "controllers/base", "controllers/costmap", "controllers/route")  # fmt: skip
+SOURCES = (*OF_ARMS, "driven", "suites/people", "suites/people_crowd", "suites/people_scripts",
+           "suites/people_sites", "suites/people_witness",
            "suites/people_witness_kernels")  # fmt: skip
 
 Row = dict[str, Any]
@@ -57,10 +58,10 @@ def run(
 
 def run_mission(scenario: Scenario, arm: str, settings: Mapping[str, Any] | None = None) -> Row:
     """Drives a world the way of an arm and returns its metrics; "error" if that raises."""
-    preset, of_arm, follows = ARMS[arm]
+    preset, of_arm, controller = ARMS[arm]
     navigator = merged(merged(scenario.navigator, settings or {}), of_arm)
     driven = replace(scenario, preset=preset, navigator=navigator)
-    return row_of(lambda: measure(drive(driven, navigator=Follower if follows else None))._asdict())
+    return row_of(lambda: measure(drive(driven, navigator=controller))._asdict())
 
 
 def summary(rows: Sequence[Row]) -> dict[str, dict[str, dict[str, Any]]]:

@@ -1,10 +1,13 @@
 """The arms of the ablation: what is left out or read differently, one thing at a time."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
+from dynastar.bench.controllers.printed import Printed
+from dynastar.bench.follower import Follower
 from dynastar.navigator import Preset
 from dynastar.planning import HeuristicConfig
+from dynastar.simulation import Controller
 
 ALL_TERMS = HeuristicConfig()
 PLAIN = HeuristicConfig(exponential=False, parent=False, k=0.0, weight=1.0)
@@ -26,11 +29,11 @@ BASE_TERMS = "Eq. 2: all terms"  # what the default has
 
 
 class Arm(NamedTuple):
-    """An arm: a preset, settings that differ from it, or path following alone."""
+    """An arm: a preset, settings that differ from it, or a controller in the navigator's place."""
 
     preset: Preset = "default"
     navigator: Mapping[str, Any] = {}
-    follows: bool = False
+    controller: Callable[..., Controller] | None = None
 
 
 def _terms(planner: str, heuristic: HeuristicConfig) -> Arm:
@@ -52,7 +55,7 @@ def _weights(**weights: float) -> Arm:
 ARMS: dict[str, Arm] = {
     "default": Arm(),
     "paper": Arm("paper"),
-    "printed": Arm("printed"),
+    "printed": Arm(controller=Printed),
     **{name: _terms(*terms) for name, terms in TERMS.items() if terms != TERMS[BASE_TERMS]},
     "no exact improvement": _navigator(planner={"exact": False}),
     "Eq. 9: alpha = 0": _weights(heading=0.0),
@@ -60,8 +63,6 @@ ARMS: dict[str, Arm] = {
     "Eq. 9: gamma = 0": _weights(vel=0.0),
     "Eq. 9: weights as printed": _weights(heading=0.5, dist=0.2, vel=0.2, simi=0.1),
     "no risk": _weights(risk=0.0),
-    "bearing in place of cost-to-go": _window(progress="bearing"),
-    "constant arcs, no tails": _window(search="arcs"),
     "no hysteresis": _window(hysteresis=0.0),
     "window of one period": _window(reach=0.0),
     "3 x 6 samples": _window(v_samples=3, omega_samples=6),
@@ -77,6 +78,5 @@ ARMS: dict[str, Arm] = {
     "no reverse": _navigator(reverse=False),
     "period 0.05 s": _navigator(period=0.05),
     "period 0.2 s": _navigator(period=0.2),
-    "no replanning": _navigator(global_path="once"),
-    "path following alone": Arm(follows=True),
+    "path following alone": Arm(controller=Follower),
 }

@@ -7,7 +7,7 @@ from dynastar.bench.tables import Cell, Table
 from dynastar.config import Field
 from dynastar.navigator import PRESETS
 
-ORDER = ("printed", "paper", "default")
+ORDER = ("paper", "default")
 
 
 def settings_of(config: Any, where: str = "") -> Iterator[tuple[str, str, Any]]:

@@ -10,7 +10,6 @@ from dynastar.bench.families import KINDS
 from dynastar.bench.figures import SUFFIXES, draw_all
 from dynastar.bench.tables import Table, as_markdown
 from dynastar.io.files import written_aside
-from dynastar.navigator import Preset
 from dynastar.viewer.sheet import save
 from dynastar.viewer.spread import Column, Spread, draw_columns, draw_spreads
 
@@ -85,27 +84,19 @@ def report_table1(asked: Asked) -> Report:
 
 
 def report_table3(asked: Asked) -> Report:
-    """Table III: in the own world, and over many, by each preset; a tenth as many as printed."""
+    """Table III: in the own world, and over many by each preset; over a tenth by ``printed``."""
     seed, folder, workers, progress, settings = asked[2:]
-    worlds: dict[Preset, int] = {
-        "default": asked.maps,
-        "paper": asked.maps,
-        "printed": -(-asked.maps // 10),
+    worlds = {"default": asked.maps, "paper": asked.maps, "printed": -(-asked.maps // 10)}
+    by_arm = {
+        arm: table3.run(count, seed, folder, workers, progress, arm, settings)
+        for arm, count in worlds.items()
     }
-    by_preset: dict[str, list[dict[str, Any]]] = {
-        preset: table3.run(count, seed, folder, workers, progress, preset, settings)
-        for preset, count in worlds.items()
-    }
-    rows = by_preset["default"]
+    rows = by_arm["default"]
     own = table3.own_row(settings=settings)
     arrived = {
-        preset: [row for row in of if row["outcome"] == "arrived"]
-        for preset, of in by_preset.items()
+        arm: [row for row in of if row["outcome"] == "arrived"] for arm, of in by_arm.items()
     }
-    names = {
-        preset: f"{preset}: {len(arrived[preset])} of {len(of)} arrived"
-        for preset, of in by_preset.items()
-    }
+    names = {arm: f"{arm}: {len(arrived[arm])} of {len(of)} arrived" for arm, of in by_arm.items()}
     alone, hybrid = table3.PRINTED["improved"], table3.PRINTED["hybrid"]
     measures = {
         "length driven / improved A*'s grid path": (table3.length_ratio, hybrid[0] / alone[0]),
@@ -114,7 +105,7 @@ def report_table3(asked: Asked) -> Report:
     spreads = [
         Spread(
             label,
-            {name: [ratio(row) for row in arrived[preset]] for preset, name in names.items()},
+            {name: [ratio(row) for row in arrived[arm]] for arm, name in names.items()},
             printed,
             log=True,
             reference=1.0,
@@ -125,11 +116,11 @@ def report_table3(asked: Asked) -> Report:
         "table3",
         {
             "table3": table3.summary(rows),
-            "table3_presets": {name: table3.summary(of) for name, of in by_preset.items()},
+            "table3_presets": {name: table3.summary(of) for name, of in by_arm.items()},
             "table3_own": own,
         },
-        table3.tables(by_preset, own),
-        {f"table3-{name}": of for name, of in by_preset.items()},
+        table3.tables(by_arm, own),
+        {f"table3-{name}": of for name, of in by_arm.items()},
         draw_spreads(spreads) if any(arrived.values()) else None,
     )
 

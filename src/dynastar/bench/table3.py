@@ -1,6 +1,7 @@
 """Table III: the improved A* alone against the hybrid, over many worlds and on the own one."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from operator import itemgetter
 from pathlib import Path
@@ -9,16 +10,14 @@ from typing import Any
 import numpy as np
 
 from dynastar.bench import paper
+from dynastar.bench.ablation import OF_ARMS, run_mission
 from dynastar.bench.rows import collect, version
-from dynastar.bench.runner import Options, choose_missions, row_of
+from dynastar.bench.runner import Options, choose_missions
 from dynastar.bench.statistics import wilson
 from dynastar.bench.tables import Cell, Table, spread_of
 from dynastar.grid import OccupancyGrid
-from dynastar.metrics import measure
-from dynastar.navigator import Preset
 from dynastar.planning import GridPlanner, plan
 from dynastar.simulation import Scenario
-from dynastar.simulation import run as drive
 
 # As printed: path length, turning points.
 PRINTED = {"improved": (33, 7), "hybrid": (29, 4)}
@@ -32,30 +31,27 @@ def run(
     folder: Path,
     workers: int = 1,
     progress: bool = False,
-    preset: Preset = "default",
+    arm: str = "default",
     settings: Mapping[str, Any] | None = None,
 ) -> list[Row]:
     """The rows of the suite's first ``missions`` worlds that its rule does not leave out.
 
-    ``settings`` of the navigator are over those of the preset. The rows are kept in ``folder`` and
-    gone on with from there, by the same version.
+    ``arm`` is one of the ablation's; ``settings`` of the navigator are over those of its preset. The
+    rows are kept in ``folder`` and gone on with from there, by the same version.
     """
     folder.mkdir(parents=True, exist_ok=True)
     chosen, _ = choose_missions(paper, Options(missions=missions, seed=seed))
     jobs = [mission.number for mission in chosen]
-    modules = ("table3", "paper", "own_maps")
-    run_of: Row = {"table": 3, "seed": seed, "preset": preset, "version": version(*modules)}
+    run_of: Row = {"table": 3, "seed": seed, "arm": arm, "version": version("table3", *OF_ARMS)}
     run_of |= {"settings": settings} if settings else {}
-    work = partial(_row, seed=seed, preset=preset, settings=settings or {})
-    file = folder / f"table3-{preset}.jsonl"
-    return collect(f"table3, {preset}", work, jobs, file, run_of, workers, progress)
+    work = partial(_row, seed=seed, arm=arm, settings=settings)
+    file = folder / f"table3-{arm}.jsonl"
+    return collect(f"table3, {arm}", work, jobs, file, run_of, workers, progress)
 
 
-def own_row(
-    preset: Preset = "default", seed: int = 0, settings: Mapping[str, Any] | None = None
-) -> Row:
+def own_row(settings: Mapping[str, Any] | None = None) -> Row:
     """The row of the project's own world; it has no number."""
-    return {"number": None, **_both(paper.own_world(), preset, seed, settings or {})}
+    return {"number": None, **_both(paper.own_world(), 0, "default", settings)}
 
 
 def grid_way(scenario: Scenario) -> Row:
@@ -246,16 +242,15 @@ def _five(values: Sequence[float]) -> list[float | None]:
     return [float(q) for q in np.quantile(values, (0.5, 0.25, 0.75, 0.95, 1.0))]
 
 
-def _row(number: int, seed: int, preset: Preset, settings: Mapping[str, Any]) -> Row:
+def _row(number: int, seed: int, arm: str, settings: Mapping[str, Any] | None) -> Row:
     made = paper.world(seed, number)
     assert isinstance(made, Scenario)
-    return {"number": number, **_both(made, preset, seed, settings)}
+    return {"number": number, **_both(made, seed, arm, settings)}
 
 
-def _both(scenario: Scenario, preset: Preset, seed: int, settings: Mapping[str, Any]) -> Row:
-    changes = {"preset": preset, "seed": seed, "navigator": settings}
-    driven = Scenario(**{**vars(scenario), **changes})
-    return {**row_of(lambda: measure(drive(driven))._asdict()), **grid_way(scenario)}
+def _both(scenario: Scenario, seed: int, arm: str, settings: Mapping[str, Any] | None) -> Row:
+    driven = run_mission(replace(scenario, seed=seed), arm, settings)
+    return {**driven, **grid_way(scenario)}
 
 
 def _with_blocks(scenario: Scenario) -> OccupancyGrid:

@@ -15,7 +15,7 @@ from dynastar.cli.parsing import (
     seed,
 )
 
-PRESETS = ("default", "paper", "printed")  # those of dynastar.navigator
+PRESETS = ("default", "paper")  # those of dynastar.navigator
 # The names in dynastar.bench.runner.SUITES, which would import too much for --help.
 SUITES = (
     "movingai",

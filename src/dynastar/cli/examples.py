@@ -40,12 +40,12 @@ examples:
   dynastar paper table3 --maps 100 --out out/hundred --json-out -
   dynastar paper all --json-out paper.json
 
-  presets   the settings in which the presets printed, paper and default differ
+  presets   the settings in which the presets paper and default differ
   table1    traditional against improved A*, on the own map, over maps of 40 x 40 cells (random, rooms,
             maze, office; corner to corner), and over a tenth as many of 512 x 512; 2 minutes
   table3    the improved A* alone against the hybrid, in the own world and over worlds of 20 x 20 cells
-            with unknown blocks and a mover, by the presets default and paper, and a tenth of them as
-            printed; 40 minutes for 1000
+            with unknown blocks and a mover, by the presets default and paper, and a tenth of them by
+            the controller printed; 40 minutes for 1000
   ablation  each term of Eqs. 2 and 9 left out or read otherwise, and each part of the whole, on worlds
             of the suites paper and people; 2 hours for 100 of each
   figures   Figs. 1 to 8; 10 seconds

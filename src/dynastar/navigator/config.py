@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Annotated, Any, Literal, NamedTuple
 
 from dynastar.config import Field, checked, choose, self_checking
-from dynastar.dwa.config import ArcsConfig, DwaConfig, Weights
+from dynastar.dwa.config import DwaConfig, Weights
 from dynastar.perception import LocalMapConfig, PredictionConfig, TrackerConfig
 from dynastar.planning import PlannerConfig
 
@@ -70,34 +70,13 @@ class NavigatorConfig(NamedTuple):
     prediction: PredictionConfig = PredictionConfig()
 
 
-Preset = Literal["default", "paper", "printed"]
+Preset = Literal["default", "paper"]
 PRESETS: dict[str, NavigatorConfig] = {
     "default": NavigatorConfig(),
     "paper": NavigatorConfig(
         reverse=False,
         planner=PlannerConfig(),
         dwa=DwaConfig(weights=Weights(0.5, 0.2, 0.2, 0.1)),
-    ),
-    "printed": NavigatorConfig(
-        reverse=False,
-        hidden_speed=0.0,
-        track=False,
-        comfort=0.0,
-        global_path="strayed",
-        stuck_time=30.0,
-        attempts=0,
-        planner=PlannerConfig(),
-        dwa=DwaConfig(
-            weights=Weights(0.5, 0.2, 0.2, 0.1, risk=0.0),
-            search="arcs",
-            progress="bearing",
-            reach=0.0,
-            v_samples=21,
-            omega_samples=41,
-            comfort=10.0,
-            hysteresis=0.0,
-            arcs=ArcsConfig(motion="printed", stop="printed", dist="end", normalise="sums"),
-        ),
     ),
 }
 
