@@ -60,14 +60,14 @@ def cost_to_go(closed, goal, radius):
 
 
 def scene_of(closed, goal=(7.0, 4.0), movers=(), radius=0.3, margin=0.05, hidden=NOBODY_HIDDEN,
-             ahead=0.0, last=AT_REST, v_cap=9.0, path=None, sigma=0.0, target=(7.0, 4.0)):  # fmt: skip
+             ahead=0.0, last=AT_REST, v_cap=9.0, path=None, sigma=0.0):  # fmt: skip
     """A scene in which all that is closed is occupied, too."""
     field = field_of(closed)
     people = predict(movers, PredictionConfig(), (ahead, STEP, HORIZON))
     to_go = cost_to_go(closed, goal, radius + margin)
     return Scene(
         field, field, to_go, people, hidden, margin, margin, ahead, last, v_cap,
-        field if path is None else path, sigma, target,
+        field if path is None else path, sigma,
     )  # fmt: skip
 
 

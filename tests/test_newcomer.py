@@ -41,7 +41,7 @@ LIMITS = Limits(1.0, 1.5, 0.8, 2.0, 0.8, 2.0)
         (lambda: NavigatorConfig(0.1, period=0.1), "'NavigatorConfig.period' is given twice"),
         (lambda: NavigatorConfig(dwa=DwaConfig(v_samples=2.5)), "'DwaConfig.v_samples' is 2.5"),
         (lambda: NavigatorConfig(dwa={"v_samples": 1}), "'NavigatorConfig.dwa.v_samples' is 1"),
-        (lambda: DwaConfig(search="arc"), "expected one of 'manoeuvres', 'arcs'"),
+        (lambda: NavigatorConfig(unknown="fre"), "expected one of 'free', 'blocked'"),
         (lambda: Weights(*range(6)), "Weights has 5 values, got 6"),
         (lambda: Limits(-1, 1, 1, 1, 1, 1), "'Limits.v_max' is -1 m/s"),
         (lambda: LIMITS._replace(v_accel=0), "'Limits.v_accel' is 0 m/s2"),

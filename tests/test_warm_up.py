@@ -35,12 +35,11 @@ options = Options(data=Path(sys.argv[1]) if sys.argv[1] else None, missions=2)
 for name in sys.argv[2:]:
     suite = load_suite(name)
     for mission in choose_missions(suite, options)[0][:2]:
-        for preset in "default", "printed":
-            scenario = replace(suite.scenario(mission, options, 0), preset=preset)
-            drive(replace(scenario, time_limit=0.1))  # the simulator's own
-            driving = True
-            drive(replace(scenario, time_limit=4.0))
-            driving = False
+        scenario = suite.scenario(mission, options, 0)
+        drive(replace(scenario, time_limit=0.1))  # the simulator's own
+        driving = True
+        drive(replace(scenario, time_limit=4.0))
+        driving = False
 print(compiled, loaded)
 """
 

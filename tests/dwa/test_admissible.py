@@ -12,7 +12,6 @@ from dynastar.dwa.admissible import (
     HIDDEN,
     MOVER,
     NO_STOP,
-    admissible_speed,
     certified_stop,
     hidden_gap,
     rests_in_time,
@@ -83,14 +82,6 @@ def true_sweep(limits, state, command):
     stop = drive.stopping_time(twist, limits)
     poses += [arc(pose, twist, f * stop) for f in np.linspace(0.0, 0.5, 150)]
     return [(p.x, p.y, math.cos(p.theta), math.sin(p.theta)) for p in poses]
-
-
-@given(st.floats(0.0, 10.0), st.floats(0.05, 5.0))
-@settings(deadline=None)
-def test_equation_7(dist, brake):
-    speed = admissible_speed(dist, brake)
-    assert speed * speed / (2.0 * brake) == pytest.approx(dist, abs=1e-9)
-    assert admissible_speed(-1.0, brake) == 0.0
 
 
 @pytest.mark.parametrize("name", sorted(SHAPES))

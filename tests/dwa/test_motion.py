@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dynastar import robot
-from dynastar.dwa.motion import coast, driven, moved, moved_straight, slew
+from dynastar.dwa.motion import coast, driven, moved, slew
 from dynastar.robot import Limits
 
 START = (0.3, -0.2, math.cos(0.7), math.sin(0.7))
@@ -28,21 +28,6 @@ def euler(pose, v, omega, duration, steps=20000):
         math.cos(end),
         math.sin(end),
     )
-
-
-def test_equation_4_as_printed_goes_straight_and_turns_then():
-    x, y, cos, sin = moved_straight(START, 2.0, 0.5)
-    assert (x, y) == pytest.approx((0.3 + 2.0 * math.cos(0.7), -0.2 + 2.0 * math.sin(0.7)))
-    assert math.atan2(sin, cos) == pytest.approx(1.2)
-
-
-@given(st.floats(-2, 2), st.floats(-4, 4))
-@settings(deadline=None)
-def test_in_small_steps_equation_4_as_printed_is_the_arc(v, omega):
-    pose = START
-    for _ in range(2000):
-        pose = moved_straight(pose, v * 5e-4, omega * 5e-4)
-    assert pose == pytest.approx(moved(START, v, omega), abs=5e-3)
 
 
 @given(st.floats(-2, 2), st.floats(-4, 4), st.floats(0.0, 2.0))

@@ -12,14 +12,7 @@ from dynastar.perception.prediction import WEIGHTS, predict
 CONFIG = PredictionConfig()
 
 
-@given(st.floats(-10, 10), st.floats(-10, 10))
-@settings(deadline=None)
-def test_the_heading_term_of_equation_8(theta, bearing):
-    off = math.atan2(math.sin(theta - bearing), math.cos(theta - bearing))
-    assert o.heading(theta, bearing) == pytest.approx(1.0 - abs(off) / math.pi, abs=1e-9)
-
-
-def test_the_other_terms_are_scaled_to_one():
+def test_the_terms_are_scaled_to_one():
     assert o.progress(1.0, 2.0) == 0.5
     assert o.progress(-3.0, 2.0) == -1.0
     assert (o.dist(0.1, 0.4), o.dist(9.0, 0.4), o.dist(-0.2, 0.4)) == pytest.approx(

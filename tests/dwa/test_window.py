@@ -3,13 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dynastar.dwa.window import (
-    dynamic_window,
-    multiples,
-    sample_multiples,
-    sample_window,
-    spaced,
-)
+from dynastar.dwa.window import dynamic_window, sample_window, spaced
 from dynastar.robot import ROBOTS, slew
 
 robots = st.sampled_from(sorted(ROBOTS))
@@ -69,32 +63,3 @@ def test_without_room_there_is_one_sample():
     samples = np.empty((30, 2))
     assert sample_window((0.3, 0.3, 0.1, 0.1), np.empty(5), np.empty(5), 2, 2, samples) == 1
     assert samples[0].tolist() == [0.3, 0.1]
-
-
-@given(st.floats(-2, 2), st.floats(0, 3), st.floats(0.005, 0.5), st.integers(2, 60))
-@settings(deadline=None)
-def test_multiples_lie_in_the_window_with_zero_among_them(low, width, step, most):
-    values, high = np.full(most + 3, np.nan), low + width
-    n = multiples(low, high, step, most, values)
-    found = values[:n]
-    assert 1 <= n <= most + 1
-    assert (found >= low - 1e-6).all()
-    assert (found <= high + 1e-6).all()
-    if low <= 0.0 <= high:
-        assert (np.abs(found) < 1e-12).any()
-    if n > 1:
-        steps = np.diff(found) / step
-        assert steps == pytest.approx(np.full(n - 1, np.round(steps[0])), abs=1e-6)
-    if width / step + 1 <= most and n > 1:
-        assert steps[0] == pytest.approx(1.0)
-        assert found[0] - low < step
-        assert high - found[-1] < step
-
-
-def test_samples_at_multiples_are_all_pairs():
-    samples, steps = np.empty((99, 2)), (0.01, 0.02)
-    window = (0.485, 0.525, -0.031, 0.029)
-    n = sample_multiples(window, np.empty(9), np.empty(9), steps, (6, 6), samples)
-    assert np.unique(samples[:n, 0]) == pytest.approx([0.49, 0.5, 0.51, 0.52])
-    assert np.unique(samples[:n, 1]) == pytest.approx([-0.02, 0.0, 0.02])
-    assert n == 12

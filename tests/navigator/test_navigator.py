@@ -267,13 +267,6 @@ def test_a_block_that_no_map_shows_is_planned_round():
     drive.until("arrived")
 
 
-def test_a_path_planned_once_is_kept():
-    drive = Drive(room(), global_path="once")
-    drive.navigator.set_goal(Goal(6.5, 3.0))
-    drive.for_seconds(8.0)
-    assert (drive.status.replans, drive.status.plan_id) == (0, 1)
-
-
 def test_who_waits_for_a_path_steps_aside_for_who_comes():
     """A wall that no map shows closes the room, so there is no path for some seconds."""
     drive = Drive(room(), true=room(8.0, 6.0, (5.0, 0.0, 5.2, 6.0)))

@@ -50,11 +50,3 @@ def test_other_samples_and_weights_are_used_at_once(driving):
     drive(world, navigator, 300)
     assert navigator.status.state == "arrived"
     assert world.contact == ""
-
-
-def test_constant_arcs_can_be_chosen_while_it_drives(driving):
-    world, navigator = driving
-    navigator.retune(DwaConfig(search="arcs"))
-    drive(world, navigator, 20)
-    assert world.contact == ""
-    assert navigator.status.state != "sensor_lost"

@@ -79,8 +79,6 @@ def plan_and_simulate() -> None:
 
 def drive() -> None:
     """Compile the kernels of the navigator."""
-    from dynastar.dwa.config import SEARCHES
     from dynastar.navigator.navigator import warm_up
 
-    for search in SEARCHES:
-        warm_up(search)
+    warm_up()

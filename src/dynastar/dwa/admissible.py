@@ -1,4 +1,4 @@
-"""Which commands are admissible: Eq. 7, and the certified stop behind every command."""
+"""Which commands are admissible: those behind which a stop is certified, which is more than Eq. 7."""
 
 import math
 
@@ -10,12 +10,6 @@ from dynastar.dwa.motion import driven, moved, stopping_time
 
 ADMISSIBLE, NO_STOP, MOVER, HIDDEN = range(4)
 LOOK = 0.1  # s between the looks at moving obstacles during a stop
-
-
-@njit(cache=True)
-def admissible_speed(dist, brake):
-    """Eq. 7: sqrt(2 dist brake), the highest speed that stops within ``dist`` (m or rad)."""
-    return math.sqrt(2.0 * max(dist, 0.0) * brake)
 
 
 @njit(cache=True)

@@ -1,12 +1,8 @@
 """The dynamic window's settings: the weights of Eq. 9, what is sampled, and how it is scored."""
 
-import math
-from typing import Annotated, Literal, NamedTuple, get_args
+from typing import Annotated, NamedTuple
 
 from dynastar.config import Field, self_checking
-
-Search = Literal["manoeuvres", "arcs"]
-SEARCHES: tuple[Search, ...] = get_args(Search)
 
 
 @self_checking
@@ -21,42 +17,10 @@ class Weights(NamedTuple):
 
 
 @self_checking
-class ArcsConfig(NamedTuple):
-    """The classic window, whose samples are held on constant arcs (``dwa.search = "arcs"``)."""
-
-    time: Annotated[float, Field("forward simulation time", "s", 0.1, 10.0)] = 3.0
-    motion: Annotated[
-        Literal["exact", "printed"], Field("Eq. 4 along the arc, or by straight steps as in print")
-    ] = "exact"
-    stop: Annotated[
-        Literal["certified", "printed"], Field("admissible by the certified stop, or by Eq. 7")
-    ] = "certified"
-    dist: Annotated[
-        Literal["least", "end"], Field("clearance of Eq. 8: the arc's least, or its end point's")
-    ] = "least"
-    normalise: Annotated[
-        Literal["ranges", "sums"],
-        Field("terms over fixed ranges, or over their sums over the admissible samples"),
-    ] = "ranges"
-    v_step: Annotated[float, Field("resolution of the speed", "m/s", 0.001, 1.0)] = 0.01
-    omega_step: Annotated[float, Field("resolution of the turning rate", "rad/s", 0.001, 1.0)] = (
-        math.radians(1.0)
-    )
-
-
-@self_checking
 class DwaConfig(NamedTuple):
     """Settings of one dynamic window."""
 
     weights: Weights = Weights()
-    search: Annotated[
-        Search,
-        Field("samples followed by a tail (follow, stop, reverse), or constant arcs"),
-    ] = "manoeuvres"
-    progress: Annotated[
-        Literal["cost-to-go", "bearing"],
-        Field("heading of Eq. 8: decrease of the cost-to-go, or the bearing of a target"),
-    ] = "cost-to-go"
     arc_time: Annotated[
         float, Field("shortest time for which a sample is held", "s", 0.1, 10.0)
     ] = 0.5
@@ -74,4 +38,3 @@ class DwaConfig(NamedTuple):
     hysteresis: Annotated[
         float, Field("score by which a new manoeuvre must exceed the last one", "", 0.0, 10.0)
     ] = 0.02
-    arcs: ArcsConfig = ArcsConfig()

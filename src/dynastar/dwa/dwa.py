@@ -8,12 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.dwa import admissible
-from dynastar.dwa.arcs import Arcs, search_arcs
 from dynastar.dwa.config import DwaConfig
 from dynastar.dwa.rollout import LOOKS
 from dynastar.dwa.scene import AT_REST, Manoeuvre, Scene
 from dynastar.dwa.search import search
-from dynastar.dwa.window import dynamic_window, sample_multiples, sample_window
+from dynastar.dwa.window import dynamic_window, sample_window
 from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import Limits, Robot
 
@@ -54,17 +53,13 @@ class Span(NamedTuple):
 
 
 class Rules(NamedTuple):
-    """Rules for evaluating candidates: shape, limits, span, weights (Eq. 9), period (s).
-
-    ``by_bearing`` tells whether heading is the bearing of the target, and not the progress.
-    """
+    """Rules for evaluating candidates: shape, limits, span, weights (Eq. 9), period (s)."""
 
     body: Body
     limits: Limits
     span: Span
     weights: tuple[float, float, float, float, float]
     period: float
-    by_bearing: bool
 
 
 def body_of(robot: Robot) -> Body:
@@ -113,10 +108,9 @@ class DynamicWindow:
         self.robot, self.config, self.period = robot, config, period
         limits = robot.limits
         self.body = body_of(robot)
-        arcs_time = config.arcs.time if config.search == "arcs" else 0.0
         step = min(config.step, config.arc_time / 4)
         steps = max(4, round(config.arc_time / step))
-        far = max(config.horizon, arcs_time) + 0.5 * limits.v_max / limits.v_brake
+        far = config.horizon + 0.5 * limits.v_max / limits.v_brake
         self.span = Span(
             step,
             steps,
@@ -142,15 +136,7 @@ class DynamicWindow:
         self.complete = False  # whether ``choose`` scores all, as ``survey`` does
         alpha, beta, gamma, sigma, rho = map(float, config.weights)
         weights = alpha, beta, gamma, sigma, rho
-        by_bearing = config.progress == "bearing"
-        self._rules = Rules(self.body, limits, self.span, weights, period, by_bearing)
-        self._arcs = Arcs(
-            min(round(config.arcs.time / step), self.span.horizon_steps),
-            config.arcs.motion == "printed",
-            config.arcs.stop == "printed",
-            config.arcs.dist == "end",
-            config.arcs.normalise == "sums",
-        )
+        self._rules = Rules(self.body, limits, self.span, weights, period)
 
     def choose(
         self, pose: Pose2D, twist: Twist, scene: Scene, measured: Twist | None = None
@@ -163,11 +149,7 @@ class DynamicWindow:
         window = dynamic_window(*twist, limits, min(scene.v_cap, limits.v_max), self._reach)
         samples, speeds, rates = self._buffers[0], self._speeds, self._rates
         most = config.v_samples, config.omega_samples
-        if config.search == "arcs":
-            steps = config.arcs.v_step, config.arcs.omega_step
-            n = sample_multiples(window, speeds, rates, steps, most, samples)
-        else:
-            n = sample_window(window, speeds, rates, *most, samples)
+        n = sample_window(window, speeds, rates, *most, samples)
         return self._search(pose, twist, _greater(twist, measured), scene, n)
 
     def survey(
@@ -186,11 +168,8 @@ class DynamicWindow:
         """The best of the ``n`` samples in the buffers."""
         samples, commands, holds, tails, terms, refused, score = self._buffers
         state = ((pose.x, pose.y, math.cos(pose.theta), math.sin(pose.theta)), *twist)
-        if self.config.search == "arcs":
-            best = search_arcs(scene, self._rules, self._arcs, state, stop_from, n, self._buffers)
-        else:
-            best = search(scene, self._rules, state, stop_from, n, self._buffers, not self.complete)
-            n += 2
+        best = search(scene, self._rules, state, stop_from, n, self._buffers, not self.complete)
+        n += 2
         refused = refused[:n].copy()
         counts = np.bincount(refused, minlength=max(REFUSALS) + 1)
         command = Twist(*commands[best].tolist()) if best >= 0 else None

@@ -43,19 +43,6 @@ def moved(pose, length, angle):
 
 
 @njit(cache=True)
-def moved_straight(pose, length, angle):
-    """Eq. 4 as printed: straight on for ``length`` m, then turned by ``angle`` rad."""
-    x, y, cos, sin = pose
-    turned_cos, turned_sin = math.cos(angle), math.sin(angle)
-    return (
-        x + length * cos,
-        y + length * sin,
-        cos * turned_cos - sin * turned_sin,
-        sin * turned_cos + cos * turned_sin,
-    )
-
-
-@njit(cache=True)
 def driven(pose, v, omega, wanted_v, wanted_omega, limits, duration):
     """Pose and speeds after ``duration`` seconds of ramping towards the wanted speeds.
 

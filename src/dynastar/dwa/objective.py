@@ -1,19 +1,12 @@
 """The terms of Eq. 8 and their sum, Eq. 9, with the risk term.
 
-G = alpha heading + beta dist + gamma vel + sigma simi - rho risk
+G = alpha heading + beta dist + gamma vel + sigma simi - rho risk, where ``progress`` takes the place
+of the paper's heading.
 """
 
 import math
 
 from dynastar.compiled import njit
-
-
-@njit(cache=True)
-def heading(theta, bearing):
-    """Heading term of Eq. 8: 1 - |theta - bearing| / pi, from 0 to 1 (larger is better)."""
-    off = theta - bearing
-    off -= math.tau * math.floor(off / math.tau + 0.5)
-    return 1.0 - abs(off) / math.pi
 
 
 @njit(cache=True)

@@ -13,7 +13,6 @@ from dynastar.dwa.cost_to_go import direction_at, value_at
 from dynastar.dwa.motion import driven
 from dynastar.dwa.objective import (
     dist,
-    heading,
     note_risk,
     objective,
     progress,
@@ -67,13 +66,6 @@ def pose_value(field, limits, pose, v):
     curve = (off - math.sin(off)) * limits.v_max / limits.omega_max
     too_far = max(0.0, 0.5 * v * v / limits.v_brake - max(left, 0.0) - OVERSHOOT)
     return left + min(curve, max(left, 0.0)) + too_far
-
-
-@njit(cache=True)
-def bearing_term(target, pose):
-    """The heading term of Eq. 8 as printed: how well a pose is headed for the target."""
-    bearing = math.atan2(target[1] - pose[1], target[0] - pose[0])
-    return heading(math.atan2(pose[3], pose[2]), bearing)
 
 
 @njit(cache=True)
@@ -160,7 +152,7 @@ def future(scene, rules, state, manoeuvre, gauge, terms, worst):
     worst[:] = 0.0
     clear, gained, here, fell, looks = gap, 0.0, begin, 0.0, 0
     terms[DIST], terms[VEL], terms[SIMI] = 1.0, vel(asked_v, limits.v_max), 1.0
-    strayed, headed = 0.0, 1.0
+    strayed = 0.0
     blocked = gone = False
     last = span.horizon_steps
     k = 0
@@ -189,8 +181,6 @@ def future(scene, rules, state, manoeuvre, gauge, terms, worst):
             note_risk(people, k - 1, t, pose[0], pose[1], span.risk_radius, worst)
         if k == span.steps:
             terms[DIST] = dist(clear, span.comfort)
-            if rules.by_bearing:
-                headed = bearing_term(scene.target, pose)
         if looks < LOOKS and k >= (looks + 1) * between:
             looks += 1
             if not gone:
@@ -204,7 +194,7 @@ def future(scene, rules, state, manoeuvre, gauge, terms, worst):
                 terms[SIMI] = simi(strayed, STRAY)
             left = LOOKS - looks
             at_best = gained + left * (begin - here) + 0.5 * left * (left + 1) * most
-            terms[HEADING] = headed if rules.by_bearing else progress(at_best, LOOKS * scale)
+            terms[HEADING] = progress(at_best, LOOKS * scale)
             terms[RISK] = risk(people, worst)
             if objective(weights, terms) < enough:
                 return DROPPED
@@ -212,6 +202,6 @@ def future(scene, rules, state, manoeuvre, gauge, terms, worst):
             terms[RISK] = risk(people, worst)
             if objective(weights, terms) < enough:
                 return DROPPED
-    terms[HEADING] = headed if rules.by_bearing else progress(gained, LOOKS * scale)
+    terms[HEADING] = progress(gained, LOOKS * scale)
     terms[RISK] = risk(people, worst)
     return SCORED

@@ -43,8 +43,7 @@ class Scene(NamedTuple):
     ``margin`` (m) is kept from both, ``kept`` from the former where the robot stands nearer than
     that. ``ahead`` (s) is when a command given now acts, ``last`` what is left of the manoeuvre that
     was chosen last, ``v_cap`` (m/s) the speed limit. ``path`` are distances to the path ahead, and
-    ``sigma`` the least weight of keeping to it; ``target`` (x, y) is the intermediate target (V, step
-    2), which only ``dwa.progress = "bearing"`` looks at.
+    ``sigma`` the least weight of keeping to it.
     """
 
     closed: DistanceField
@@ -59,4 +58,3 @@ class Scene(NamedTuple):
     v_cap: float
     path: DistanceField
     sigma: float
-    target: tuple[float, float]

@@ -1,7 +1,5 @@
 """The dynamic window: which speeds can be reached (Eqs. 5 and 6), and its samples."""
 
-import math
-
 from dynastar.compiled import njit
 from dynastar.dwa.motion import slew
 
@@ -41,29 +39,6 @@ def spaced(low, high, count, values):
             values[k] = value
     values[k + 1] = high
     return k + 2
-
-
-@njit(cache=True)
-def multiples(low, high, step, most, values):
-    """Writes the multiples of ``step`` from low to high, and how many; every second, third... of them
-    where there are more than ``most``. Between two of them it is the nearer end to 0."""
-    width = int(math.floor((high - low) / step)) + 1
-    step *= max(1, -(-width // most))
-    first, last = int(math.ceil(low / step - 1e-9)), int(math.floor(high / step + 1e-9))
-    if last < first:
-        values[0] = low if abs(low) < abs(high) else high
-        return 1
-    for k in range(first, last + 1):
-        values[k - first] = k * step
-    return last - first + 1
-
-
-@njit(cache=True)
-def sample_multiples(window, speeds, rates, steps, most, samples):
-    """Writes the samples (v, omega) at multiples of ``steps`` (m/s, rad/s), and returns how many."""
-    count_v = multiples(window[0], window[1], steps[0], most[0], speeds)
-    count_w = multiples(window[2], window[3], steps[1], most[1], rates)
-    return cross(count_v, count_w, speeds, rates, samples)
 
 
 @njit(cache=True)

@@ -37,21 +37,6 @@ class NavigatorConfig(NamedTuple):
     heading_tolerance: Annotated[
         float, Field("heading error at which a goal is reached", "rad", 0.01, 3.2)
     ] = 0.1
-    global_path: Annotated[
-        Literal["replanned", "strayed", "once"],
-        Field(
-            "replan when needed, or when the robot has left the path (section V, step 4), or never"
-        ),
-    ] = "replanned"
-    stray: Annotated[
-        float,
-        Field(
-            "distance from the path at which the robot has left it (section V, step 4)",
-            "m",
-            0.01,
-            100.0,
-        ),
-    ] = 1.0
     planning_resolution: Annotated[
         float, Field("largest cell of the planning map", "m", 0.001, 10.0)
     ] = 0.05
@@ -62,7 +47,6 @@ class NavigatorConfig(NamedTuple):
         float, Field("time without progress until a recovery", "s", 0.5, 120.0)
     ] = 6.0
     attempts: Annotated[int, Field("recoveries before the mission is given up", "", 0, 100)] = 4
-    track: Annotated[bool, Field("track moving obstacles")] = True
     planner: PlannerConfig = PlannerConfig(exact=True)
     dwa: DwaConfig = DwaConfig()
     local_map: LocalMapConfig = LocalMapConfig()

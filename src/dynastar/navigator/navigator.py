@@ -10,7 +10,7 @@ import numpy.typing as npt
 from dynastar.clearance import DistanceField, lower_bounds
 from dynastar.config import choose
 from dynastar.dwa.clearance import kept_margin
-from dynastar.dwa.config import DwaConfig, Search
+from dynastar.dwa.config import DwaConfig
 from dynastar.dwa.dwa import Choice, DynamicWindow
 from dynastar.dwa.scene import AT_REST, Scene
 from dynastar.errors import InputError
@@ -86,6 +86,7 @@ class Navigator:
         self.route = Route(self.planning_map, self.mission, config)
         if planner is None:
             warm_up_all()
+        warm_up()
 
     @property
     def status(self) -> Status:
@@ -128,7 +129,6 @@ class Navigator:
             dwa.weights.simi > 0.0,
         )
         self._last = AT_REST
-        warm_up(dwa.search)
 
     def set_map(self, grid: OccupancyGrid) -> None:
         """Another map; what was seen is kept round the robot, the next tick plans anew."""
@@ -276,15 +276,7 @@ class Navigator:
             self._speed_cap(pose),
             beside,
             KEPT if lead.ahead < math.inf else 0.0,
-            self._target(pose),
         )
-
-    def _target(self, pose: Pose2D) -> tuple[float, float]:
-        """The intermediate target of Eq. 8's heading; the robot's place where no term needs it."""
-        dwa = self.config.dwa
-        if dwa.progress == "cost-to-go":
-            return pose.x, pose.y
-        return self.route.target(pose, self.robot.limits.v_max * dwa.arcs.time)
 
     def _speed_cap(self, pose: Pose2D) -> float:
         """The speed (m/s) that leaves room to slow down for the map's speed limits ahead."""
@@ -359,12 +351,13 @@ class Navigator:
         return abs(wrap_angle(goal.heading - state.pose.theta)) <= self.config.heading_tolerance
 
 
-_warm: set[Search] = set()
+_warm = False
 
 
-def warm_up(search: Search) -> None:
-    """Compiles or loads what a kind of commands (``dwa.search``) calls, once a process."""
-    if search not in _warm:
-        _warm.add(search)
-        config = NavigatorConfig(latency=0.1, dwa=DwaConfig(search=search))
+def warm_up() -> None:
+    """Compiles or loads what commands call, once a process."""
+    global _warm
+    if not _warm:
+        _warm = True
+        config = NavigatorConfig(latency=0.1)
         drive_a_little(Navigator(ROOM, ROBOTS["jackal"], config, Straight()))

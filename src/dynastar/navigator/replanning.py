@@ -63,14 +63,6 @@ class Route:
             return Lead(self._stand, 0.0, math.inf)
         return Lead(self.path, self.s, math.inf if self._given is None else ahead)
 
-    def target(self, here: Pose2D, radius: float) -> tuple[float, float]:
-        """Where the path leaves a circle of ``radius`` (m) round the robot (V, step 2), or its end."""
-        path = self._stand if self.path is None else self.path
-        points = path.resampled(self.s, self.s + 3.0 * radius, SPACING)
-        outside = np.hypot(points[:, 0] - here.x, points[:, 1] - here.y) > radius
-        x, y = points[int(np.argmax(outside)) if outside.any() else -1].tolist()
-        return x, y
-
     def keep(self, state: RobotState, changed: bool, reachable: bool) -> bool:
         """Keeps a path that leads to the goal; whether it is a new one.
 
@@ -88,12 +80,8 @@ class Route:
         self.s = self.path.project(*here, low=self.s - 0.5, high=self.s + 2.0)
         if self._unsure:
             return self._improve(state)
-        rule = self.config.global_path
-        if since < REPLAN_PERIOD or rule == "once" or self._given is not None:
+        if since < REPLAN_PERIOD or self._given is not None:
             return False
-        if rule == "strayed":
-            astray = math.dist(here, self.path.at(self.s)) > self.config.stray
-            return astray and self._replan(state, "the robot has left the path")
         if not reachable:
             return self._replan(state, "the path is blocked nearby")
         if changed:

@@ -157,9 +157,7 @@ class Sensing:
         sensor = compose(self._pose_at(scan.stamp), scan.mount)
         limits, angles = (scan.range_min, scan.range_max), (scan.angle_min, scan.angle_increment)
         points, beams = scan_points(scan.ranges, limits, angles, tuple(sensor))
-        moving = np.zeros(len(points), np.bool_)
-        if self.config.track:
-            moving = self.tracker.update(scan, sensor, points, beams, self.local_map, known)
+        moving = self.tracker.update(scan, sensor, points, beams, self.local_map, known)
         self.local_map.see(
             scan, sensor, points, moving, self.config.range_error, self.config.heading_error
         )

@@ -21,7 +21,7 @@ def navigate(arguments: Sequence[str]) -> int:
     from dynastar.ros.node import NavigatorNode
 
     warm_up_all()
-    warm_up("manoeuvres")
+    warm_up()
     return run(NavigatorNode, arguments)
 
 
