@@ -15,7 +15,7 @@ from dynastar.errors import InputError, PlanningError, ScenarioError
 from dynastar.geometry import Pose2D, Twist
 from dynastar.planning.explain import explained
 from dynastar.robot import stopping_time
-from dynastar.simulation.faults import FaultInjector
+from dynastar.simulation.fault_injector import FaultInjector
 from dynastar.simulation.record import Recorder
 from dynastar.simulation.scenario import Scenario
 from dynastar.simulation.tracing import Tracer
