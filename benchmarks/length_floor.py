@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.bench import paper
-from dynastar.bench.runner import Options
+from dynastar.bench.missions import Options
 from dynastar.navigator import Navigator
 from dynastar.navigator.planning_map import PlanningMap
 from dynastar.path import Path

@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 
 from dynastar.bench import paper
-from dynastar.bench.runner import row_of
+from dynastar.bench.missions import row_of
 from dynastar.bench.workers import spread
 from dynastar.metrics import measure
 from dynastar.simulation import Mover, Scenario, run

@@ -8,7 +8,7 @@ import numpy as np
 
 from driving import ROUND, room
 from dynastar.bench import driven
-from dynastar.bench.runner import Mission
+from dynastar.bench.missions import Mission
 from dynastar.geometry import Goal
 from dynastar.simulation import Scenario
 

@@ -10,8 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from dynastar.bench.runner import SUITES
-from dynastar.cli import arguments
 from test_cli import SCENARIO, finite, folder, refused, run
 
 __all__ = ["folder"]  # a fixture
@@ -22,10 +20,6 @@ FILES = {"figure.png", "animation.gif", "summary.json", "episode.npz", "config.j
 def small_result(outcomes: list[str]) -> str:
     rows = [{"number": n, "outcome": outcome} for n, outcome in enumerate(outcomes)]
     return json.dumps({"suite": "small", "rows": rows})
-
-
-def test_the_help_names_every_suite() -> None:
-    assert set(arguments.SUITES) == set(SUITES)
 
 
 def test_a_mission_is_run_kept_and_replayed(

@@ -12,7 +12,9 @@ from dataclasses import replace
 from pathlib import Path
 import dynastar.compiled
 from numba.core import caching, event
-from dynastar.bench.runner import Options, choose_missions, load_suite
+from dynastar.bench.missions import Options
+from dynastar.bench.selection import choose_missions
+from dynastar.bench.suites import load_suite
 from dynastar.simulation.run import drive
 
 compiled, loaded, driving = [], [], False

@@ -8,7 +8,8 @@ from dynastar.bench.ablation import ARMS
 from dynastar.bench.controllers.printed import Printed
 from dynastar.bench.families import Map, draw
 from dynastar.bench.follower import Follower
-from dynastar.bench.runner import Mission, Options, choose_missions
+from dynastar.bench.missions import Mission, Options
+from dynastar.bench.selection import choose_missions
 from dynastar.bench.statistics import wilson
 from dynastar.bench.suites import people
 from dynastar.bench.tables import as_text

@@ -8,7 +8,8 @@ import pytest
 
 from dynastar.bench import driven
 from dynastar.bench.keeping import FailureKeeper, replay
-from dynastar.bench.runner import Mission, Options, run_suite
+from dynastar.bench.missions import Mission, Options
+from dynastar.bench.runner import run_suite
 from dynastar.errors import ConfigError, InputError
 from dynastar.io import load_episode
 from small_suite import SUITE, scenario

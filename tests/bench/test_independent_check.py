@@ -8,7 +8,7 @@ import pytest
 
 import independent
 from dynastar.bench.controllers import controller_named
-from dynastar.bench.runner import Mission, Options
+from dynastar.bench.missions import Mission, Options
 from dynastar.bench.suites import barn
 from dynastar.geometry import Goal, Twist
 from dynastar.grid import GridFrame, OccupancyGrid

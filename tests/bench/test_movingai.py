@@ -4,7 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from dynastar.bench import Options, load_suite, run_suite
+from dynastar.bench.missions import Options
+from dynastar.bench.runner import run_suite
+from dynastar.bench.suites import load_suite
 from dynastar.errors import DataError
 
 INDEX = "set,map,width,height,sx,sy,gx,gy,file_length,recomputed_length,match\n"

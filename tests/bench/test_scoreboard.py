@@ -3,9 +3,10 @@ from types import ModuleType
 
 import pytest
 
-from dynastar.bench import runner, scoreboard
+from dynastar.bench import scoreboard
 from dynastar.bench.compare import compare
-from dynastar.bench.runner import Mission, Options
+from dynastar.bench.missions import Mission, Options
+from dynastar.bench.suites import SUITES
 from dynastar.bench.tables import as_text
 from dynastar.errors import DataError, InputError
 from dynastar.viewer.sheet import save
@@ -45,10 +46,16 @@ def suites(monkeypatch):
     for name, suite in made.items():
         monkeypatch.setitem(sys.modules, f"test_suite_{name}", suite)
     names = {name: f"test_suite_{name}" for name in made}
-    names["missing"] = "test_suite_of_a_package_that_is_not_there"
-    monkeypatch.setattr(runner, "SUITES", names)
-    monkeypatch.setattr(scoreboard, "SUITES", names)
+    only(monkeypatch, names | {"missing": "test_suite_of_a_package_that_is_not_there"})
     return made
+
+
+def only(monkeypatch, names):
+    """Leave no suites but these."""
+    for name in list(SUITES):
+        monkeypatch.delitem(SUITES, name)
+    for name, module_name in names.items():
+        monkeypatch.setitem(SUITES, name, module_name)
 
 
 def test_every_suite_is_run_or_said_to_be_left_out(suites, tmp_path):
@@ -108,7 +115,6 @@ def test_a_run_goes_on_where_it_was_cut_off(suites, tmp_path):
 
 
 def test_nothing_to_run_is_an_error(suites, monkeypatch):
-    for names in ("SUITES",):
-        monkeypatch.setattr(scoreboard, names, {"absent": "test_suite_absent"})
+    only(monkeypatch, {"absent": "test_suite_absent"})
     with pytest.raises(InputError, match="no suite can be run: give --data"):
         scoreboard.run_all(Options())

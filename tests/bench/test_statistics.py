@@ -99,3 +99,21 @@ def test_a_suite_without_a_score_has_none():
     found = totals([row("arrived"), row("timeout", score=None)], 0)
     assert found["score"] is found["time_ratio"] is found["tick_ms_median"] is None
     assert found["groups"] == {}
+
+
+def test_totals_of_nothing() -> None:
+    result = totals([], 3)
+    assert result["mean_length"] is None
+    assert result["skipped"] == 3
+
+
+def test_totals_count_missions() -> None:
+    rows = [
+        {"outcome": "contact", "contacts_moving": 2, "contacts_resting": 0},
+        {"outcome": "contact", "contacts_moving": 0, "contacts_resting": 1},
+        {"outcome": "timeout", "length": 4.0, "time": 400.0},
+        {"outcome": "arrived", "length": 2.0, "time": None},
+    ]
+    result = totals(rows, 0)
+    assert (result["contacts_moving"], result["contacts_resting"], result["timeouts"]) == (1, 1, 1)
+    assert (result["mean_length"], result["mean_time"]) == (2.0, None)

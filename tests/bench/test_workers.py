@@ -1,6 +1,8 @@
 import math
 import multiprocessing
 import os
+import subprocess
+import sys
 
 import pytest
 
@@ -43,3 +45,26 @@ def test_who_leaves_early_leaves_no_process_behind():
     for child in set(multiprocessing.active_children()) - before:
         child.join(timeout=10.0)
     assert set(multiprocessing.active_children()) <= before
+
+
+POOL = """\
+import multiprocessing, os, time
+from concurrent.futures import ProcessPoolExecutor
+from dynastar.bench.workers import settle
+
+if __name__ == "__main__":
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(1, context, initializer=settle)
+    print(pool.submit(os.getpid).result(), flush=True)
+    pool.submit(time.sleep, 60.0).result()
+"""
+
+
+def test_workers_end_with_a_parent_that_is_killed(tmp_path):
+    script = tmp_path / "pool.py"
+    script.write_text(POOL)
+    with subprocess.Popen([sys.executable, script], stdout=subprocess.PIPE, text=True) as parent:
+        assert parent.stdout is not None
+        assert int(parent.stdout.readline()) != parent.pid
+        parent.kill()
+        parent.communicate(timeout=20.0)  # ends when the last who holds the pipe, the worker, has

@@ -7,7 +7,7 @@ import pytest
 from numba.core import event
 
 from driving import under_way, with_ranges
-from dynastar.bench.runner import Options
+from dynastar.bench.missions import Options
 from dynastar.bench.suites import faults
 from dynastar.errors import InputError
 from dynastar.geometry import Pose2D, Twist

@@ -9,11 +9,14 @@ from typing import Any
 import numpy as np
 
 from dynastar.bench.arms import ARMS
-from dynastar.bench.rows import collect, version
-from dynastar.bench.runner import Mission, Options, choose_missions, load_suite, row_of
+from dynastar.bench.missions import Mission, Options, row_of
+from dynastar.bench.rows import collect
+from dynastar.bench.selection import choose_missions
 from dynastar.bench.settings import merged
 from dynastar.bench.statistics import bootstrap, wilson
+from dynastar.bench.suites import load_suite
 from dynastar.bench.tables import Cell, Table
+from dynastar.bench.versions import version
 from dynastar.metrics import measure
 from dynastar.simulation import Scenario
 from dynastar.simulation import run as drive

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from multiprocessing.connection import Connection
 from typing import Any
 
-from dynastar.bench.runner import row_of
+from dynastar.bench.missions import row_of
 
 Row = dict[str, Any]
 

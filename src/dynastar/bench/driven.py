@@ -8,7 +8,7 @@ import numpy as np
 
 from dynastar.bench.bound import time_bound
 from dynastar.bench.controllers import controller_named
-from dynastar.bench.runner import Mission, Options
+from dynastar.bench.missions import Mission, Options
 from dynastar.bench.settings import merged
 from dynastar.episode import Episode
 from dynastar.metrics import measure

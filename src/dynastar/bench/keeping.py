@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from dynastar.bench.runner import Job, Mission, Options, Suite, run_job
+from dynastar.bench.missions import Mission, Options, Suite
+from dynastar.bench.runner import Job, run_job
 from dynastar.bench.statistics import succeeded
 from dynastar.episode import Episode
 from dynastar.errors import DynastarError, InputError

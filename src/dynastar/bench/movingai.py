@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dynastar.bench.runner import Mission, Options, data_folder
+from dynastar.bench.missions import Mission, Options, data_folder
 from dynastar.errors import DataError, NoPath
 from dynastar.io.movingai import load_movingai_map
 from dynastar.planning import SearchGrid

@@ -14,8 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.bench import driven
+from dynastar.bench.missions import Mission, Options
 from dynastar.bench.own_maps import own_twenty
-from dynastar.bench.runner import Mission, Options
 from dynastar.errors import DataError, NoPath
 from dynastar.geometry import Goal
 from dynastar.grid import OccupancyGrid

@@ -66,7 +66,7 @@ def _client(address: str) -> Any:
 
 
 def _check_workers(client: Any, address: str) -> None:
-    from dynastar.bench.rows import code_version
+    from dynastar.bench.versions import code_version
 
     found = client.run(code_version)
     if not found:

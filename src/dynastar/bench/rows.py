@@ -1,6 +1,5 @@
 """Rows of an experiment, one a job: kept as they come, and continued where a run was cut off."""
 
-import hashlib
 import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -8,7 +7,6 @@ from typing import Any
 
 from tqdm import tqdm
 
-import dynastar
 from dynastar.bench.workers import Workers, completed
 from dynastar.errors import InputError
 from dynastar.io.files import MAX_TEXT_BYTES, jsonable, read_bytes, written_aside
@@ -50,37 +48,6 @@ def collect(
                 bar.set_postfix(arrived=arrived, refresh=False)
             bar.update()
     return [done[key] for key in keys]
-
-
-def version(*modules: str) -> str:
-    """A digest of all that rows can depend on: the library, bench's runner, and its ``modules`` named.
-
-    The rest of bench, cli and viewer have no influence on a row.
-    """
-    package = Path(dynastar.__file__).parent
-    named = [package / "bench" / f"{name}.py" for name in {"runner", *modules}]
-    return _digest([*_sources({"cli", "viewer", "bench"}), *named])
-
-
-def code_version() -> str:
-    """A digest of the library and all of bench: what the rows of a suite can depend on."""
-    return _digest(_sources({"cli", "viewer"}))
-
-
-def _sources(outside: set[str]) -> list[Path]:
-    package = Path(dynastar.__file__).parent
-    return [
-        source
-        for source in package.rglob("*.py")
-        if source.relative_to(package).parts[0] not in outside
-    ]
-
-
-def _digest(sources: Sequence[Path]) -> str:
-    digest = hashlib.sha256()
-    for source in sorted(sources):
-        digest.update(source.read_bytes())
-    return digest.hexdigest()[:16]
 
 
 def _key(job: Any) -> str:

@@ -6,8 +6,10 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from dynastar.bench.runner import SUITES, Job, Options, jobs_of, load_suite, result_of, run_jobs
+from dynastar.bench.missions import Options
+from dynastar.bench.runner import Job, jobs_of, result_of, run_jobs
 from dynastar.bench.statistics import bootstrap
+from dynastar.bench.suites import SUITES, load_suite
 from dynastar.bench.tables import Cell, Table
 from dynastar.errors import InputError
 from dynastar.viewer.intervals import Estimate, Measure, draw_intervals

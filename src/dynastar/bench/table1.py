@@ -12,8 +12,9 @@ import numpy as np
 from dynastar.bench.families import KINDS, Map, draw
 from dynastar.bench.optimum import shortest_over_centres, shortest_over_corners
 from dynastar.bench.own_maps import own_forty
-from dynastar.bench.rows import collect, version
+from dynastar.bench.rows import collect
 from dynastar.bench.tables import spread_of
+from dynastar.bench.versions import version
 from dynastar.planning import HeuristicConfig, SearchGrid, SearchResult, smooth, straighten
 
 SIZE, LARGE = 40, 512  # cells a side

@@ -11,10 +11,12 @@ import numpy as np
 
 from dynastar.bench import paper
 from dynastar.bench.ablation import OF_ARMS, run_mission
-from dynastar.bench.rows import collect, version
-from dynastar.bench.runner import Options, choose_missions
+from dynastar.bench.missions import Options
+from dynastar.bench.rows import collect
+from dynastar.bench.selection import choose_missions
 from dynastar.bench.statistics import wilson
 from dynastar.bench.tables import Cell, Table, spread_of
+from dynastar.bench.versions import version
 from dynastar.grid import OccupancyGrid
 from dynastar.planning import GridPlanner, plan
 from dynastar.simulation import Scenario

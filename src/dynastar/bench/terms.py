@@ -11,8 +11,9 @@ import numpy as np
 
 from dynastar.bench.arms import PLAIN, TERMS
 from dynastar.bench.families import KINDS, Map, draw
-from dynastar.bench.rows import collect, version
+from dynastar.bench.rows import collect
 from dynastar.bench.tables import Cell, Table, spread_of
+from dynastar.bench.versions import version
 from dynastar.planning import HeuristicConfig, SearchGrid
 
 ROUNDS = 3  # each arm's best time of so many, in turns

@@ -3,6 +3,7 @@
 import argparse
 
 from dynastar import __version__
+from dynastar.bench.suites import SUITES
 from dynastar.cli import examples
 from dynastar.cli.parsing import (
     OneLineParser,
@@ -16,21 +17,6 @@ from dynastar.cli.parsing import (
 )
 
 PRESETS = ("default", "paper")  # those of dynastar.navigator
-# The names in dynastar.bench.runner.SUITES, which would import too much for --help.
-SUITES = (
-    "movingai",
-    "paper",
-    "barn",
-    "dynabarn",
-    "mrpb",
-    "crowd",
-    "maps",
-    "office",
-    "faults",
-    "random",
-    "people",
-    "scenarios",
-)
 
 
 def build_parser() -> argparse.ArgumentParser:

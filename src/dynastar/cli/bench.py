@@ -7,11 +7,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from dynastar.bench import SUITES, Options, load_suite, run_suite
 from dynastar.bench.controllers import controller_named
 from dynastar.bench.keeping import FailureKeeper
+from dynastar.bench.missions import Options
+from dynastar.bench.runner import run_suite
 from dynastar.bench.settings import read_settings
 from dynastar.bench.statistics import succeeded
+from dynastar.bench.suites import SUITES, load_suite
 from dynastar.bench.tables import Cell, Table, as_text
 from dynastar.cli.compiling import prepare
 from dynastar.cli.outputs import check_file, make_folder

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 import shapely
 
-from dynastar.bench import Mission, Options, driven
+from dynastar.bench import driven
+from dynastar.bench.missions import Mission, Options
 from dynastar.bench.suites import barn
 from dynastar.bench.suites.challenge import challenge_run, challenge_score
 from dynastar.errors import DataError

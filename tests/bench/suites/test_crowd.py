@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynastar.bench import Options
+from dynastar.bench.missions import Options
 from dynastar.bench.robots import CROWD_ROBOT
-from dynastar.bench.runner import choose_missions
+from dynastar.bench.selection import choose_missions
 from dynastar.bench.suites import crowd, crowd_worlds
 from dynastar.errors import DataError
 from dynastar.grid import GridFrame, OccupancyGrid

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynastar.bench import Options
+from dynastar.bench.missions import Options
 from dynastar.bench.suites import dynabarn
 from dynastar.errors import DataError
 from dynastar.io.dynabarn import load_dynabarn

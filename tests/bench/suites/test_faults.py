@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from dynastar.bench import driven
-from dynastar.bench.runner import Mission, Options
+from dynastar.bench.missions import Mission, Options
 from dynastar.bench.suites import faults
 from dynastar.geometry import Pose2D, Twist
 from dynastar.grid import GridFrame

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 import shapely
 
-from dynastar.bench import Options
+from dynastar.bench.missions import Options
 from dynastar.bench.robots import MAPS_ROBOT
-from dynastar.bench.runner import choose_missions
+from dynastar.bench.selection import choose_missions
 from dynastar.bench.suites import maps
 from dynastar.bench.suites.map_worlds import MapWorld, draw_world
 from dynastar.errors import DataError

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynastar.bench import Options
+from dynastar.bench.missions import Options
 from dynastar.bench.suites import mrpb
 from dynastar.errors import DataError
 from dynastar.grid import OccupancyGrid

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynastar.bench import Mission, Options, load_suite
-from dynastar.bench.suites import office
+from dynastar.bench.missions import Mission, Options
+from dynastar.bench.suites import load_suite, office
 from dynastar.errors import DataError
 from dynastar.io.scenario_file import load_scenario
 from dynastar.simulation.movers import Movers

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import shapely
 
-from dynastar.bench.runner import Options
+from dynastar.bench.missions import Options
 from dynastar.bench.suites import people as suite
 from dynastar.bench.suites import people_crowd, people_scripts, people_witness
 from dynastar.bench.suites.people_sites import SITES, Site

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import shapely
 
-from dynastar.bench.runner import Options
+from dynastar.bench.missions import Options
 from dynastar.bench.suites import random_worlds as suite
 from dynastar.bench.suites.random_kinds import KINDS
 from dynastar.bench.suites.random_layout import CAREFUL, CELL, SPARE, Layout, StaticWorld, narrow

@@ -1,1 +1,39 @@
-"""Suites in which a robot drives, a module each."""
+"""The suites by name, each a module with the names of ``dynastar.bench.missions.Suite``."""
+
+from importlib import import_module
+
+from dynastar.config import choose
+from dynastar.errors import DataError
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:  # not imported for --help
+    from dynastar.bench.missions import Suite
+
+SUITES = {
+    "movingai": "dynastar.bench.movingai",
+    "paper": "dynastar.bench.paper",
+    "barn": "dynastar.bench.suites.barn",
+    "dynabarn": "dynastar.bench.suites.dynabarn",
+    "mrpb": "dynastar.bench.suites.mrpb",
+    "crowd": "dynastar.bench.suites.crowd",
+    "maps": "dynastar.bench.suites.maps",
+    "office": "dynastar.bench.suites.office",
+    "faults": "dynastar.bench.suites.faults",
+    "random": "dynastar.bench.suites.random_worlds",
+    "people": "dynastar.bench.suites.people",
+    "scenarios": "dynastar.bench.suites.scenarios",
+}
+
+
+def load_suite(name: str) -> "Suite":
+    """The suite of that name; ConfigError, with the nearest name, if there is none.
+
+    DataError if it needs a package that is not installed.
+    """
+    try:
+        return import_module(choose(name, SUITES, "suite"))
+    except ModuleNotFoundError as error:
+        raise DataError(
+            f"the suite {name} needs the package {error.name}, which is not installed; the extras of "
+            "dynastar are in its README"
+        ) from None

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from dynastar.bench import driven
-from dynastar.bench.runner import Mission, Options, data_folder
+from dynastar.bench.missions import Mission, Options, data_folder
 from dynastar.bench.suites.challenge import (
     ARRIVED_WITHIN,
     FULL_SPEED,

@@ -1,16 +1,12 @@
-"""What the suites on public data share: finding the data, shapes, and who touched whom."""
+"""What the suites on public data share: shapes, and who touched whom."""
 
 import math
-import os
-from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 import shapely
 
-from dynastar.bench.runner import Options
 from dynastar.episode import Episode
-from dynastar.errors import DataError
 from dynastar.geometry import Pose2D
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.robot import Footprint
@@ -20,22 +16,6 @@ Floats = npt.NDArray[np.float64]
 
 TOUCHING = 0.02  # m, the largest gap at which a mover counts as the one that was touched
 DISC_SIDES = 12
-
-
-def folder_with(options: Options, suite: str, name: str, pattern: str) -> Path:
-    """The folder ``name``, or the one named, that has files of a glob ``pattern``.
-
-    ``--data`` is that folder or the one above it, or else $DYNASTAR_DATA is; else DataError.
-    """
-    named = options.data or os.environ.get("DYNASTAR_DATA")
-    if not named:
-        raise DataError(f"the suite {suite} reads data: give --data DIR or set DYNASTAR_DATA")
-    for folder in (Path(named) / name, Path(named)):
-        if any(folder.glob(pattern)):
-            return folder
-    raise DataError(
-        f"{named} has no {name}/{pattern}, and no {pattern}: the suite {suite} reads these"
-    )
 
 
 def empty_map(x: tuple[float, float], y: tuple[float, float], resolution: float) -> OccupancyGrid:

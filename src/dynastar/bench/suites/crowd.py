@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from dynastar.bench import driven
+from dynastar.bench.missions import Mission, Options, data_folder
 from dynastar.bench.robots import CROWD_ROBOT
-from dynastar.bench.runner import Mission, Options
-from dynastar.bench.suites.common import folder_with, touched_mover
+from dynastar.bench.suites.common import touched_mover
 from dynastar.bench.suites.crowd_worlds import (
     Point,
     clear_start,
@@ -121,7 +121,7 @@ def contact_on_appearing(episode: Episode, movers: tuple[Mover, ...]) -> bool:
 
 
 def _folder(options: Options) -> Path:
-    return folder_with(options, "crowd", "pedestrians", "*_map.yaml")
+    return data_folder(options, "crowd", "*_map.yaml", "pedestrians")
 
 
 @lru_cache(maxsize=4)

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from dynastar.bench import driven
-from dynastar.bench.runner import Mission, Options, data_folder
+from dynastar.bench.missions import Mission, Options, data_folder
 from dynastar.bench.suites.challenge import (
     ARRIVED_WITHIN,
     FULL_SPEED,

@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from dynastar.bench import driven
 from dynastar.bench.bounded import row_within
-from dynastar.bench.runner import Mission, Options
+from dynastar.bench.missions import Mission, Options
 from dynastar.episode import Episode
 from dynastar.geometry import Goal, Pose2D
 from dynastar.grid import GridFrame, OccupancyGrid

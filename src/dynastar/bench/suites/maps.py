@@ -12,9 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from dynastar.bench import driven
+from dynastar.bench.missions import Mission, Options, data_folder
 from dynastar.bench.robots import MAPS_ROBOT
-from dynastar.bench.runner import Mission, Options
-from dynastar.bench.suites.common import folder_with
 from dynastar.bench.suites.map_worlds import MapWorld, draw_world
 from dynastar.errors import DataError
 from dynastar.geometry import Goal
@@ -73,7 +72,7 @@ def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, An
 
 
 def _folder(options: Options) -> Path:
-    return folder_with(options, "maps", "ros_maps", "*.yaml")
+    return data_folder(options, "maps", "*.yaml", "ros_maps")
 
 
 @lru_cache(maxsize=8)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from dynastar.bench import driven
-from dynastar.bench.runner import Mission, Options, data_folder
+from dynastar.bench.missions import Mission, Options, data_folder
 from dynastar.bench.suites.common import empty_map
 from dynastar.episode import Episode
 from dynastar.geometry import Goal

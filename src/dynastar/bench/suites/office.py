@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from dynastar.bench import driven
-from dynastar.bench.runner import Mission, Options
+from dynastar.bench.missions import Mission, Options
 from dynastar.errors import DataError
 from dynastar.io.scenario_file import load_scenario
 from dynastar.simulation import Mover, Noise, Scenario

@@ -29,8 +29,8 @@ import numpy as np
 
 from dynastar.bench import driven
 from dynastar.bench.bound import least_time
+from dynastar.bench.missions import Mission, Options
 from dynastar.bench.robots import CROWD_ROBOT, MAPS_ROBOT
-from dynastar.bench.runner import Mission, Options
 from dynastar.bench.suites import people_crowd, people_scripts
 from dynastar.bench.suites.people_sites import SITES, Site, draw_site, heading_of
 from dynastar.bench.suites.people_witness import find_witness, lattice_heading

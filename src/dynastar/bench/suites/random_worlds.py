@@ -33,7 +33,7 @@ import numpy as np
 
 from dynastar.bench import driven
 from dynastar.bench.bound import least_time
-from dynastar.bench.runner import Mission, Options
+from dynastar.bench.missions import Mission, Options
 from dynastar.bench.suites.random_kinds import KINDS
 from dynastar.bench.suites.random_layout import StaticWorld
 from dynastar.bench.suites.random_truth import TrueSpace

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from dynastar.bench import driven
-from dynastar.bench.runner import Mission, Options
+from dynastar.bench.missions import Mission, Options
 from dynastar.errors import DataError
 from dynastar.io.scenario_file import load_scenario
 from dynastar.simulation import Scenario

@@ -1,0 +1,101 @@
+"""Which missions of a suite are run: a slice of their numbers, so many of them, or a quick few.
+
+Missions carry the suite's own numbers, rising; ``--select`` is a slice over those numbers,
+``--missions`` counts the missions run after leaving out, and every number that was passed on the way
+and not run is counted as skipped.
+"""
+
+from collections.abc import Iterable, Iterator
+from itertools import islice
+from typing import NamedTuple
+
+from dynastar.bench.missions import Mission, Options, Suite
+from dynastar.errors import InputError
+
+
+class Slice(NamedTuple):
+    """The numbers start, start + step, ... below ``stop`` (None: without end)."""
+
+    start: int
+    stop: int | None
+    step: int
+
+    def until(self, number: int) -> range:
+        """Numbers of the slice below ``number``."""
+        return range(self.start, number if self.stop is None else min(self.stop, number), self.step)
+
+
+def parse_select(text: str) -> Slice:
+    """The slice that "A:B:C", with any part left out, or a bare "N" stands for; else InputError."""
+    parts = text.split(":")
+    try:
+        numbers = [int(part) if part.strip() else None for part in parts]
+        if len(parts) == 1 and numbers[0] is not None and numbers[0] >= 0:
+            return Slice(numbers[0], numbers[0] + 1, 1)
+        start, stop, step = (*numbers, None, None)[:3]
+        if 2 <= len(parts) <= 3 and (start or 0) >= 0 and (stop or 0) >= 0:
+            chosen = Slice(start or 0, stop, 1 if step is None else step)
+            if chosen.step >= 1:
+                return chosen
+    except ValueError:
+        pass
+    raise InputError(
+        f"--select {text!r}: expected A:B:C (from A, below B, every C-th) or N, none negative"
+    )
+
+
+def choose_missions(suite: Suite, options: Options) -> tuple[list[Mission], int]:
+    """The missions to run, in order, and how many numbers were passed over or left out."""
+    if options.quick:
+        return _quick_missions(suite, options)
+    select = parse_select(options.select) if options.select is not None else None
+    limit = options.missions
+    if limit is None and (select is None or select.stop is None):
+        limit = suite.DEFAULT_MISSIONS
+    chosen: list[Mission] = []
+    present = skipped = past = 0
+    for mission in _selected(suite.missions(options), select):
+        present, past = present + 1, mission.number + 1
+        if suite.leave_out(mission, options):
+            skipped += 1
+            continue
+        chosen.append(mission)
+        if len(chosen) == limit:
+            break
+    else:
+        past = max(past, select.stop or 0) if select is not None else past
+    asked = len(select.until(past)) if select is not None else present
+    return chosen, skipped + asked - present
+
+
+def _selected(missions: Iterable[Mission], select: Slice | None) -> Iterator[Mission]:
+    for mission in missions:
+        if select is None:
+            yield mission
+        elif select.stop is not None and mission.number >= select.stop:
+            return
+        elif mission.number >= select.start and not (mission.number - select.start) % select.step:
+            yield mission
+
+
+def _quick_missions(suite: Suite, options: Options) -> tuple[list[Mission], int]:
+    """``QUICK_MISSIONS`` missions, spread evenly; one that is left out gives way to the next.
+
+    Of a suite that runs the first so many of endless missions, these are the first, too: their numbers
+    say nothing about them. ``skipped`` counts only what the suite's rule leaves out.
+    """
+    if options.missions is not None or options.select is not None:
+        raise InputError("--quick chooses the missions itself: leave out --missions and --select")
+    few: int | None = getattr(suite, "QUICK_MISSIONS", None)
+    if few is None or suite.DEFAULT_MISSIONS is not None:
+        return choose_missions(suite, options._replace(quick=False, missions=few))
+    everything = list(suite.missions(options))
+    chosen: list[Mission] = []
+    skipped = following = 0
+    for turn in range(few):
+        following = max(following, turn * len(everything) // few)
+        while following < len(everything) and suite.leave_out(everything[following], options):
+            skipped, following = skipped + 1, following + 1
+        chosen += islice(everything, following, following + 1)
+        following += 1
+    return chosen, skipped
