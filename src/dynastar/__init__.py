@@ -1,5 +1,7 @@
 """dynastar (dynamic window + A*): navigation for differential-drive robots."""
 
+from dynastar import notebook
+
 __version__ = "0.1.0"
 
 _WHERE = {
@@ -92,3 +94,13 @@ else:
 
 def __dir__() -> list[str]:
     return sorted(__all__)
+
+
+def _episode_html(episode: "Episode") -> str:
+    """The page that replays the episode, in a frame."""
+    from dynastar.page import framed
+
+    return framed(episode)
+
+
+notebook.episode_html = _episode_html

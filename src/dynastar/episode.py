@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from dynastar import notebook
 from dynastar.grid import OccupancyGrid
 from dynastar.path import Trajectory
 
@@ -95,6 +96,4 @@ class Episode:
 
     def _repr_html_(self) -> str:
         """The replay as a notebook shows it: the page of ``dynastar view`` in a frame."""
-        from dynastar.page import framed
-
-        return framed(self)
+        return notebook.episode_html(self)
