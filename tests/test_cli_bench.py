@@ -1,11 +1,9 @@
 """``dynastar bench`` and ``--set`` as others call them."""
 
 import json
-import os
-import signal
 import subprocess
 import sys
-import time
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -116,32 +114,24 @@ def test_paper_takes_settings_where_they_matter(
     assert "table1" in refused(run(capsys, "paper", "table1", *words[1:], "dwa.horizon=2"))
 
 
-@pytest.mark.slow
 def test_a_run_that_is_interrupted_goes_on(tmp_path: Path) -> None:
-    file = tmp_path / "result.json"
-    kept = tmp_path / "result.json.rows.jsonl"
-    words = ["bench", "random", "--missions", "4", "--workers", "2", "--json-out", str(file)]
-    command = [sys.executable, "-m", "dynastar", *words]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, start_new_session=True) as process:
-        until = time.monotonic() + 120.0
-        while time.monotonic() < until and not (
-            kept.exists() and kept.read_bytes().count(b"\n") > 1
-        ):
-            time.sleep(0.02)
-        os.killpg(process.pid, signal.SIGINT)
-        _, err = process.communicate(timeout=20.0)
-    assert process.returncode == 130, err
-    assert err.splitlines()[-1] == b"dynastar: interrupted"
-    first = kept.read_text().splitlines()
-    assert 2 <= len(first) < 5
-    done = subprocess.run(command, capture_output=True, check=True)
-    assert b"/4" in done.stderr
-    assert f" {len(first) - 2}/4".encode() not in done.stderr  # it does not begin anew
-    result = json.loads(file.read_text())
-    assert result["missions"] == 4
-    rows = {row["number"]: row for row in result["rows"]}
-    for line in first[1:]:
-        row = json.loads(line)["row"]
-        row.pop("wall_s")
-        assert rows[row["number"]] == row
+    file, kept = tmp_path / "result.json", tmp_path / "result.json.rows.jsonl"
+    script = Path(__file__).with_name("interrupted_bench.py")
+    words = ["bench", "interrupted", "--data", tmp_path, "--workers", "2", "--json-out", file]
+    bench = partial(
+        subprocess.run,
+        [sys.executable, script, *words],
+        capture_output=True,
+        start_new_session=True,
+    )
+    done = bench()
+    assert done.returncode == 130, done.stderr
+    assert done.stderr.splitlines()[-1] == b"dynastar: interrupted"
+    assert not file.exists()
+    _, first = map(json.loads, kept.read_text().splitlines())
+    (tmp_path / "again").touch()
+    assert bench().returncode == 0
+    rows = json.loads(file.read_text())["rows"]
+    assert [row["number"] for row in rows] == [0, 1, 2, 3]
+    assert rows[0] == {key: first["row"][key] for key in rows[0]}  # by the same process: not again
     assert not kept.exists()
