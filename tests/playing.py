@@ -22,6 +22,6 @@ def started(*options, scene="u_trap"):
 def ended(process):
     """Interrupts it; it has to end well and without a traceback."""
     process.send_signal(2)
-    _, errors = process.communicate(timeout=20)
+    _, errors = process.communicate(timeout=120)
     assert process.returncode == 0, errors
     assert "Traceback" not in errors, errors

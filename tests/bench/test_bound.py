@@ -1,5 +1,4 @@
 import math
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -109,11 +108,6 @@ def test_repeats_are_computed_once(monkeypatch):
         shortest_length(made(room(), (6.8, 3.0)))
 
 
-def test_a_large_map_is_quick():
+def test_a_large_map_with_a_wall_across():
     scenario = made(room(60.0, 60.0, (30.0, 5.0, 31.0, 55.0)), (55.0, 30.0), start=(5.0, 30.0))
-    shortest_length(made(room(), (7.0, 3.0)))  # compiles
-    began = time.perf_counter()
-    assert shortest_length(scenario) > 60.0
-    assert (
-        time.perf_counter() - began < 3.0
-    )  # measured: 0.2 s, on a machine with nothing else to do
+    assert 60.0 < shortest_length(scenario) < 75.0

@@ -42,8 +42,6 @@ def test_who_leaves_early_leaves_no_process_behind():
     rows = completed(math.factorial, list(range(50)), 2)
     next(rows)
     rows.close()
-    for child in set(multiprocessing.active_children()) - before:
-        child.join(timeout=10.0)
     assert set(multiprocessing.active_children()) <= before
 
 
@@ -56,7 +54,7 @@ if __name__ == "__main__":
     context = multiprocessing.get_context("spawn")
     pool = ProcessPoolExecutor(1, context, initializer=settle)
     print(pool.submit(os.getpid).result(), flush=True)
-    pool.submit(time.sleep, 60.0).result()
+    pool.submit(time.sleep, 3600.0).result()
 """
 
 
@@ -67,4 +65,4 @@ def test_workers_end_with_a_parent_that_is_killed(tmp_path):
         assert parent.stdout is not None
         assert int(parent.stdout.readline()) != parent.pid
         parent.kill()
-        parent.communicate(timeout=20.0)  # ends when the last who holds the pipe, the worker, has
+        parent.communicate(timeout=300.0)  # ends when the last who holds the pipe, the worker, has

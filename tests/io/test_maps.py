@@ -24,7 +24,7 @@ def test_every_form_loads_back_what_it_saved(tmp_path, name):
     assert loaded.frame == GRID.frame
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     hnp.arrays(
         np.int8, hnp.array_shapes(min_dims=2, max_dims=2, max_side=9), elements=st.integers(-1, 100)

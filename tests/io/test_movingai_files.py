@@ -1,7 +1,6 @@
 """MovingAI's maps and scenarios, and their own coordinates."""
 
 import csv
-import time
 
 import numpy as np
 import pytest
@@ -82,7 +81,7 @@ def test_no_truncation_and_no_flipped_byte_gives_anything_but_a_map_or_a_map_err
                 continue
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(hnp.arrays(bool, hnp.array_shapes(min_dims=2, max_dims=2, max_side=9)))
 def test_what_is_saved_loads_back_the_same(tmp_path, occupied):
     grid = OccupancyGrid(occupied)
@@ -139,13 +138,10 @@ def test_wrong_scenarios_say_where(tmp_path, text, message):
         load_scenarios(write(tmp_path, text.encode("latin-1"), "some.scen"))
 
 
-def test_a_large_map_loads_fast(tmp_path):
+def test_a_large_map_is_saved_and_loaded(tmp_path):
     grid = OccupancyGrid(np.random.default_rng(0).random((2048, 2048)) < 0.3)
     save_map(grid, tmp_path / "large.map")
-    begin = time.perf_counter()
-    loaded = load_map(tmp_path / "large.map")
-    assert time.perf_counter() - begin < 1.0
-    assert (loaded.values == grid.values).all()
+    assert (load_map(tmp_path / "large.map").values == grid.values).all()
 
 
 @pytest.mark.data

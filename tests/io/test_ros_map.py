@@ -127,7 +127,7 @@ def any_grid(low: int = -1) -> st.SearchStrategy:
     return st.builds(OccupancyGrid, values, frames)
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(any_grid(), st.sampled_from(["pgm", "png"]), st.sampled_from(["trinary", "scale", "raw"]))
 def test_what_is_saved_loads_back_the_same(tmp_path, grid, image, mode):
     path = tmp_path / "saved.yaml"

@@ -149,19 +149,6 @@ def test_short_paths_stay_as_they_are():
     assert smooth(blocked, [[0.5, 0.5], [2.5, 1.5]], 0.0).tolist() == [[0.5, 0.5], [2.5, 1.5]]
 
 
-@pytest.mark.slow
-def test_a_thousand_cells_take_less_than_a_few_milliseconds():
-    blocked = np.zeros((1100, 1100), dtype=bool)
-    points = SearchGrid(blocked).search((10, 10), (400, 1009)).cells + 0.5
-    smooth(blocked, points, 6.0, 10.0)
-    took = []
-    for _ in range(5):  # the least is what it costs, whatever else the machine does
-        began = time.perf_counter()
-        smooth(blocked, points, 6.0, 10.0)
-        took.append(time.perf_counter() - began)
-    assert min(took) < 5e-3
-
-
 @pytest.mark.parametrize("radius", [0.0, 0.5, 8.0])
 def test_a_few_points_may_become_many_round_something_round(radius):
     y, x = np.mgrid[:200, :200] + 0.5
@@ -191,9 +178,9 @@ def test_twice_the_bends_in_the_open_take_hardly_more_than_twice_the_time():
         blocked = np.zeros((n + 20, n + 20), dtype=bool)
         times = []
         for _ in range(3):
-            began = time.perf_counter()
+            began = time.process_time()
             assert len(smooth(blocked, line, 3.0)) == 2
-            times.append(time.perf_counter() - began)
+            times.append(time.process_time() - began)
         return min(times)
 
     seconds(100)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from dynastar.geometry import Pose2D
@@ -16,7 +16,6 @@ GRID, START = OccupancyGrid(np.zeros((12, 12), np.int8), 0.5), Pose2D(0.5, 0.5, 
 ROOM = World(Scenario("room", GRID, ROBOTS["pioneer3dx"], START, ()), START)  # 6 m x 6 m
 
 
-@settings(deadline=None)
 @given(
     st.floats(0.4, 5.6), st.floats(0.4, 5.6), st.floats(-1.5, 1.5), st.floats(-1.5, 1.5),
     st.floats(0.0, 100.0),

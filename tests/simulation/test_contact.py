@@ -36,7 +36,7 @@ def naive_gap(grid, obstacles, pose, footprint):
     return min(map(shapely.Polygon(points).distance, things))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(seed=st.integers(0, 10**6))
 def test_the_gap_is_the_brute_force_one(seed):
     random = np.random.default_rng(seed)

@@ -141,7 +141,7 @@ def test_a_yawed_map_is_touched_where_it_lies():
     assert world.pose.theta == pytest.approx(0.7)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(seed=st.integers(0, 10**6))
 def test_skipped_checks_miss_no_contact(seed):
     """Driven in ticks, the world ends where it ends with a check after every substep."""
