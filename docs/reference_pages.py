@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import dynastar
-from dynastar.cli.arguments import build_parser
+from dynastar.cli import build_parser
 from dynastar.io.scenario_schema import scenario_schema
 
 MODULES = {

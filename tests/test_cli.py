@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from dynastar.cli import main
+from dynastar.cli import arguments, main
+from dynastar.navigator import PRESETS
 
 ROOM = """\
 ##########
@@ -76,6 +77,10 @@ def test_help_imports_nothing_heavy() -> None:
     )
     assert done.stdout.splitlines()[-1] == "[]"
     assert "examples:" in done.stdout
+
+
+def test_the_presets_are_the_navigators() -> None:
+    assert set(arguments.PRESETS) == set(PRESETS)
 
 
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:

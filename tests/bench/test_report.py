@@ -5,8 +5,7 @@ import pytest
 
 from dynastar.bench.report import REPORTS, Report, write, write_csv
 from dynastar.bench.tables import Table
-from dynastar.cli import main
-from dynastar.cli.arguments import build_parser
+from dynastar.cli import build_parser, main
 
 
 def test_nested_rows_become_columns_and_a_row_may_lack_some(tmp_path):

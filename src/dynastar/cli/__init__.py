@@ -1,16 +1,48 @@
-"""The command line: ``dynastar plan``, ``run``, ``demo``, ``info`` and so on.
+"""The command line: ``dynastar plan``, ``run``, ``demo``, ``info`` and so on, a module each.
+
+A command's module has its ``DESCRIPTION``, ``EXAMPLES``, ``add_arguments`` and ``execute``. Only the
+modules of commands that are named are imported, and nothing heavy before ``execute``.
 
 Exit status: 0 done; 1 no path (``plan``) or anything but a contact-free arrival (``run``); 2 bad
-input, with one line on stderr. Nothing heavy is imported before a command needs it.
+input, with one line on stderr.
 """
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from importlib import import_module
 
-from dynastar.cli.arguments import build_parser
+from dynastar import __version__
+from dynastar.cli.parsing import OneLineParser
 from dynastar.errors import DynastarError, InputError
+
+COMMANDS = {
+    "plan": "find a path on a map",
+    "run": "drive a scenario in simulation",
+    "demo": "drive an example that comes with dynastar",
+    "info": "what a map, a scenario or an episode holds",
+    "view": "replay an episode in the browser",
+    "schema": "the JSON Schema of scenario files, for editors",
+    "bench": "run suites of missions, compare results",
+    "paper": "remake the paper's tables and figures",
+    "ros": "the navigator as a ROS 2 node",
+    "ros-sim": "the simulator as a ROS 2 node",
+    "replay": "drive by the scans and odometry of a recording",
+    "play": "drive live in the browser: send the robot, paint obstacles, drop walkers",
+    "warmup": "compile everything now, so that the first mission does not wait",
+}
+
+EXAMPLES = """\
+examples:
+  dynastar demo
+  dynastar info office.yaml --out office.png
+  dynastar plan office.yaml --start 2 2 --goal 38 23 --radius 0.25
+  dynastar run examples/office/office.toml --out out/office
+  dynastar bench paper --missions 20
+  dynastar bench all --quick --data data
+  dynastar paper table1 --maps 100
+  dynastar play
+  dynastar warmup"""
 
 ROS, TAKE_ROS = "--ros-args", ("ros", "ros-sim")
 INTERRUPTED = 130
@@ -22,10 +54,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         words = list(sys.argv[1:] if argv is None else argv)
         cut = words.index(ROS) if ROS in words and words[0] in TAKE_ROS else len(words)
-        arguments = build_parser().parse_args(words[:cut])
+        arguments = build_parser(words).parse_args(words[:cut])
         arguments.ros_args = words[cut:]
-        command = import_module(f"dynastar.cli.{arguments.command.replace('-', '_')}")
-        status: int = command.execute(arguments)
+        status: int = arguments.execute(arguments)
         sys.stdout.flush()
         return status
     except DynastarError as error:
@@ -37,6 +68,26 @@ def main(argv: Sequence[str] | None = None) -> int:
         return BROKEN_PIPE
     except OSError as error:  # a folder that cannot be written, a full disk
         return _say(str(error), 2)
+
+
+def build_parser(names: Iterable[str] = COMMANDS) -> OneLineParser:
+    """The parser of all commands; only those in ``names`` are imported and have their options."""
+    parser = OneLineParser(
+        prog="dynastar",
+        description="Navigation for differential-drive robots: an improved A* plans, "
+        "a dynamic window drives.",
+        epilog=EXAMPLES,
+    )
+    parser.add_argument("--version", action="version", version=f"dynastar {__version__}")
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    for name, what in COMMANDS.items():
+        added = commands.add_parser(name, help=what)
+        if name in names:
+            command = import_module(f"dynastar.cli.{name.replace('-', '_')}")
+            added.description, added.epilog = command.DESCRIPTION, command.EXAMPLES
+            added.set_defaults(execute=command.execute)
+            command.add_arguments(added)
+    return parser
 
 
 def _say(message: str, status: int) -> int:

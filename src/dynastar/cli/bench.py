@@ -3,30 +3,119 @@
 import argparse
 import os
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from dynastar.bench.controllers import controller_named
-from dynastar.bench.keeping import FailureKeeper
-from dynastar.bench.missions import Options
-from dynastar.bench.runner import run_suite
-from dynastar.bench.settings import read_settings
-from dynastar.bench.statistics import succeeded
+from dynastar import io
 from dynastar.bench.suites import SUITES, load_suite
-from dynastar.bench.tables import Cell, Table, as_text
-from dynastar.cli.compiling import prepare
+from dynastar.cli.arguments import PRESETS, add_set
 from dynastar.cli.outputs import check_file, make_folder
+from dynastar.cli.parsing import count, path, replayed, seed
 from dynastar.cli.show import as_json, as_table
 from dynastar.config import choose
 from dynastar.errors import InputError
 from dynastar.extras import require
-from dynastar.io.files import write_json
 
-SHOWN_FAILURES = 20
-NOT_SHOWN = ("rows", "groups", "published", "comparable", "settings", "limited")
-OF_GROUPS = ("missions", "succeeded", "contacts_moving", "contacts_resting", "score", "time_ratio")
+if TYPE_CHECKING:
+    from dynastar.bench.missions import Options
+
+DESCRIPTION = (
+    "Runs a suite of missions, or all of them, and counts every failure; runs a mission "
+    "again; compares two results."
+)
+
+EXAMPLES = """\
+examples:
+  dynastar bench movingai --data data/movingai
+  dynastar bench barn --data data --workers 2 --json-out barn.json
+  dynastar bench barn --replay 17               # mission 17 again, with pictures and the episode
+  dynastar bench barn --set dwa.horizon=2 --save-failures out/failures --json-out b.json
+  dynastar bench maps --controller pure_pursuit
+  dynastar bench scenarios --data examples/features
+  dynastar bench all --quick --data data --out out/bench
+  dynastar bench compare barn.json b.json
+
+A mission has the suite's own number. A run with --json-out that was cut off goes on where it ended when
+it is called again; until then its rows are in FILE.rows.jsonl. `all` runs every suite whose data and
+extras are there and writes all.json, all.txt and all.png into DIR. `compare` takes two results of the
+same missions and says for each suite whether the second is better, worse or not clearly different."""
+
 COMMANDS = {"all": "run every suite", "compare": "compare two results"}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command."""
+    _add_missions(parser)
+    _add_results(parser)
+
+
+def _add_missions(parser: argparse.ArgumentParser) -> None:
+    """Add what says which missions are run, and how."""
+    parser.add_argument(
+        "suite",
+        metavar="SUITE",
+        help=f"{', '.join(SUITES)}; `all` for all of them, `compare` for two results",
+    )
+    parser.add_argument("files", nargs="*", metavar="FILE", help="two results, for `compare`")
+    parser.add_argument(
+        "--data",
+        type=path,
+        metavar="DIR",
+        help="the suite's folder or the one above it (default $DYNASTAR_DATA)",
+    )
+    parser.add_argument(
+        "--missions", type=count, metavar="N", help="run N missions, those left out not counted"
+    )
+    parser.add_argument("--repeat", type=count, default=1, metavar="N", help="each mission N times")
+    parser.add_argument(
+        "--select", metavar="A:B:C", help="a slice over the suite's own numbers, or one of them"
+    )
+    parser.add_argument("--seed", type=seed, default=0, metavar="N")
+    parser.add_argument("--preset", choices=PRESETS, default="default")
+    parser.add_argument(
+        "--ideal", action="store_true", help="without range noise and without latency"
+    )
+    parser.add_argument(
+        "--controller",
+        default="navigator",
+        metavar="NAME",
+        help="navigator (the default), pure_pursuit, printed, kompass_dwa, or MODULE:CLASS",
+    )
+    add_set(parser)
+    parser.add_argument(
+        "--quick", action="store_true", help="a few missions of the suite, or of each"
+    )
+    parser.add_argument("--workers", type=count, metavar="N", help="processes (default: all cores)")
+    parser.add_argument(
+        "--dask", metavar="ADDRESS", help="run on this Dask cluster instead, as tcp://host:8786"
+    )
+
+
+def _add_results(parser: argparse.ArgumentParser) -> None:
+    """Add what says where the results go."""
+    parser.add_argument(
+        "--json-out", metavar="FILE", help="the result with a row for every mission; - is stdout"
+    )
+    parser.add_argument(
+        "--save-failures",
+        type=path,
+        metavar="DIR",
+        help="write the episode (.npz) and a picture (.png) of each mission that failed into DIR",
+    )
+    parser.add_argument(
+        "--replay",
+        type=replayed,
+        metavar="N",
+        help="run mission N again (its repeat R: N:R) and write what `run` writes",
+    )
+    parser.add_argument(
+        "--out",
+        type=path,
+        metavar="DIR",
+        help="of --replay (default out/SUITE-N) and `all` (out/bench)",
+    )
+    parser.add_argument("--no-gif", action="store_true", help="leave out the animation of --replay")
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -45,7 +134,11 @@ def execute(arguments: argparse.Namespace) -> int:
     return _run(arguments, options)
 
 
-def _run(arguments: argparse.Namespace, options: Options) -> int:
+def _run(arguments: argparse.Namespace, options: "Options") -> int:
+    from dynastar.bench.runner import run_suite
+    from dynastar.cli.bench_output import print_result
+    from dynastar.cli.compiling import prepare
+
     suite = load_suite(arguments.suite)
     if not hasattr(suite, "scenario"):
         _refuse_driving(arguments)
@@ -61,13 +154,14 @@ def _run(arguments: argparse.Namespace, options: Options) -> int:
     if arguments.json_out == "-":
         print(as_json(result))
     else:
-        _print_result(result)
-        _print_failures(result["rows"])
+        print_result(result)
     return 0
 
 
 def _run_all(arguments: argparse.Namespace) -> int:
     from dynastar.bench.scoreboard import picture, run_all, table
+    from dynastar.bench.tables import as_text
+    from dynastar.cli.compiling import prepare
     from dynastar.viewer.sheet import save
 
     for option in ("select", "missions", "replay"):
@@ -88,8 +182,9 @@ def _run_all(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _replay(arguments: argparse.Namespace, options: Options) -> int:
+def _replay(arguments: argparse.Namespace, options: "Options") -> int:
     from dynastar.bench.keeping import replay
+    from dynastar.cli.compiling import prepare
     from dynastar.cli.run import write_folder
 
     number, repeat = arguments.replay
@@ -102,7 +197,7 @@ def _replay(arguments: argparse.Namespace, options: Options) -> int:
     write_folder(folder, episode, row, gif=not arguments.no_gif)
     print(f"pictures, numbers and the episode are in {folder}", file=sys.stderr)
     if file is not None:
-        write_json(file, row)
+        io.write_json(file, row)
     print(as_json(row) if arguments.json_out == "-" else as_table(row))
     return 0
 
@@ -115,13 +210,18 @@ def _compare(arguments: argparse.Namespace) -> int:
     file = check_file("--json-out", arguments.json_out)
     compared = compare(*map(load_result, arguments.files))
     if file is not None:
-        write_json(file, compared)
+        io.write_json(file, compared)
     print(as_json(compared) if arguments.json_out == "-" else "\n".join(as_lines(compared)))
     return 0
 
 
-def _options(arguments: argparse.Namespace) -> Options:
+def _options(arguments: argparse.Namespace) -> "Options":
     """The options of a suite from the arguments, checked before it is run."""
+    from dynastar.bench.controllers import controller_named
+    from dynastar.bench.keeping import FailureKeeper
+    from dynastar.bench.missions import Options
+    from dynastar.bench.settings import read_settings
+
     controller_named(arguments.controller)
     observe = None
     if arguments.save_failures is not None:
@@ -161,43 +261,6 @@ def _beside(file: Path) -> Path:
 
 def _write(result: Mapping[str, Any], file: Path | None, keep: Path | None) -> None:
     if file is not None:
-        write_json(file, result)
+        io.write_json(file, result)
     if keep is not None:
         keep.unlink(missing_ok=True)
-
-
-def _print_result(result: Mapping[str, Any]) -> None:
-    shown = {name: value for name, value in result.items() if name not in NOT_SHOWN}
-    for name, value in shown.items():
-        if name.endswith("_interval"):
-            shown[name] = None if value is None else f"{value[0]:.3f} to {value[1]:.3f}"
-    if result["settings"]:
-        shown["settings"] = as_json(result["settings"])
-    print(as_table(shown))
-    if result["limited"]:
-        seconds = (f"{cause} {spent:.0f} s" for cause, spent in result["limited"].items())
-        print(f"limited by: {', '.join(seconds)}")
-    if len(result["groups"]) > 1:
-        lines: list[tuple[Cell, ...]] = [
-            (name, *(of[key] for key in OF_GROUPS)) for name, of in result["groups"].items()
-        ]
-        formats = ("d", "d", "d", "d", ".3f", ".2f")
-        columns = (("group", ""), *zip(OF_GROUPS, formats, strict=True))
-        print(f"\n{as_text(Table('groups', '', columns, lines))}")
-    for published in result["published"]:
-        print(f"published: {published['label']}: {published['figure']} [{published['source']}]")
-    if result["comparable"]:
-        print(result["comparable"])
-
-
-def _print_failures(rows: Sequence[Mapping[str, Any]]) -> None:
-    failed = [row for row in rows if not succeeded(row)]
-    for row in failed[:SHOWN_FAILURES]:
-        reason = (row.get("reason") or "no reason given").partition("\n")[0]
-        repeat = f":{row['repeat']}" if row.get("repeat") else ""
-        judged = ", but not as the suite asks" if row.get("right") is False else ""
-        print(f"mission {row['number']}{repeat}: {row['outcome']}{judged}, {reason}")
-    if len(failed) > SHOWN_FAILURES:
-        print(f"and {len(failed) - SHOWN_FAILURES} more that failed")
-    if failed:
-        print("run one again with --replay and its number", file=sys.stderr)

@@ -1,18 +1,45 @@
 """``dynastar demo``: drive an example that comes with dynastar, or copy them all."""
 
 import argparse
-import shutil
 import sys
 from pathlib import Path
 
 from dynastar.cli import run
+from dynastar.cli.arguments import add_json, add_no_gif
+from dynastar.cli.parsing import path
 from dynastar.config import choose
 from dynastar.errors import InputError
-from dynastar.io.examples import example_scenarios, examples_folder
+
+DESCRIPTION = (
+    "Drives a robot across an office, or through another of the examples that come with "
+    "dynastar; draws it and measures it, as `dynastar run` does."
+)
+
+EXAMPLES = """\
+examples:
+  dynastar demo
+  dynastar demo --list
+  dynastar demo --copy my-examples"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command."""
+    parser.add_argument(
+        "name", nargs="?", default="office", metavar="NAME", help="of --list (default office)"
+    )
+    parser.add_argument("--out", type=path, metavar="DIR", help="default out/<scenario's name>")
+    add_json(parser)
+    add_no_gif(parser)
+    parser.add_argument("--list", action="store_true", help="list the examples instead")
+    parser.add_argument(
+        "--copy", type=path, metavar="DIR", help="copy all of them into a folder instead, to change"
+    )
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Runs an example as ``dynastar run`` does, or copies or lists the examples."""
+    from dynastar.io.examples import example_scenarios
+
     if arguments.list:
         print("\n".join(example_scenarios()))
         return 0
@@ -26,6 +53,10 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _copy(folder: Path) -> int:
+    import shutil
+
+    from dynastar.io.examples import examples_folder
+
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError(f"--copy {folder}: is there already; expected a new or an empty folder")
     shutil.copytree(

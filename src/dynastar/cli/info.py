@@ -2,14 +2,36 @@
 
 import argparse
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from dynastar import io, metrics
+from dynastar import io
+from dynastar.cli.arguments import add_json
 from dynastar.cli.outputs import check_file
+from dynastar.cli.parsing import path
 from dynastar.cli.show import as_json, as_table
-from dynastar.episode import Episode
-from dynastar.grid import OccupancyGrid
-from dynastar.simulation import Scenario
+
+if TYPE_CHECKING:
+    from dynastar.episode import Episode
+    from dynastar.grid import OccupancyGrid
+    from dynastar.simulation import Scenario
+
+DESCRIPTION = (
+    "Says what a map, a scenario or an episode holds: extent, resolution, how much is "
+    "free; robot, start and goals; the result."
+)
+
+EXAMPLES = """\
+examples:
+  dynastar info office.yaml
+  dynastar info examples/office/office.toml --out office.png
+  dynastar info out/office/episode.npz --json"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command."""
+    parser.add_argument("file", metavar="FILE", type=path, help="a map, .toml or .npz")
+    add_json(parser)
+    parser.add_argument("--out", type=path, metavar="PNG", help="draw it into this picture")
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -37,7 +59,7 @@ def execute(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def of_map(grid: OccupancyGrid) -> dict[str, Any]:
+def of_map(grid: "OccupancyGrid") -> dict[str, Any]:
     """A map in numbers."""
     cells = grid.values.size
     summary: dict[str, Any] = {
@@ -57,7 +79,7 @@ def of_map(grid: OccupancyGrid) -> dict[str, Any]:
     return summary
 
 
-def of_scenario(scenario: Scenario) -> dict[str, Any]:
+def of_scenario(scenario: "Scenario") -> dict[str, Any]:
     """A scenario in words and numbers."""
     limits, footprint = scenario.robot.limits, scenario.robot.footprint
     x, y, heading = scenario.start
@@ -81,8 +103,10 @@ def of_scenario(scenario: Scenario) -> dict[str, Any]:
     }
 
 
-def of_episode(episode: Episode) -> dict[str, Any]:
+def of_episode(episode: "Episode") -> dict[str, Any]:
     """An episode's scenario and numbers."""
+    from dynastar import metrics
+
     ticks = {"robot": episode.robot, "radius": episode.radius, "ticks": len(episode.commands)}
     return {**ticks, **metrics.measure(episode)._asdict()}
 

@@ -5,21 +5,82 @@ import os
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from dynastar.bench.report import REPORTS, Asked, Report, report_targets, write
-from dynastar.bench.settings import read_settings
-from dynastar.bench.tables import Table, as_markdown, as_text, fill
-from dynastar.cli.compiling import prepare
+from dynastar import io
+from dynastar.cli.arguments import add_set
 from dynastar.cli.outputs import check_file
+from dynastar.cli.parsing import count, path, seed
 from dynastar.cli.show import as_json
 from dynastar.errors import InputError
 from dynastar.extras import require
-from dynastar.io.files import write_json, written_aside
+
+if TYPE_CHECKING:
+    from dynastar.bench.report import Report
+    from dynastar.bench.tables import Table
+
+DESCRIPTION = "Remakes the paper's tables and figures, over as many maps as you like."
+
+EXAMPLES = """\
+examples:
+  dynastar paper table1
+  dynastar paper table3 --maps 100 --out out/hundred --json-out -
+  dynastar paper all --json-out paper.json
+
+  presets   the settings in which the presets paper and default differ
+  table1    traditional against improved A*, on the own map, over maps of 40 x 40 cells (random, rooms,
+            maze, office; corner to corner), and over a tenth as many of 512 x 512; 2 minutes
+  table3    the improved A* alone against the hybrid, in the own world and over worlds of 20 x 20 cells
+            with unknown blocks and a mover, by the presets default and paper, and a tenth of them by
+            the controller printed; 40 minutes for 1000
+  ablation  each term of Eqs. 2 and 9 left out or read otherwise, and each part of the whole, on worlds
+            of the suites paper and people; 2 hours for 100 of each
+  figures   Figs. 1 to 8; 10 seconds
+
+Times are for two cores. Writes tables (.md), a line for each map or world (.csv) and pictures (.png,
+.svg) into DIR, and goes on from the .jsonl there where it was cut off."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command."""
+    parser.add_argument(
+        "what",
+        nargs="?",
+        choices=("presets", "table1", "table3", "ablation", "figures", "all"),
+        default="all",
+        help="default all",
+    )
+    parser.add_argument(
+        "--maps",
+        type=count,
+        default=1000,
+        metavar="N",
+        help="maps of table1, in fours, and worlds of table3 (default 1000)",
+    )
+    parser.add_argument(
+        "--worlds",
+        type=count,
+        default=100,
+        metavar="N",
+        help="worlds of each suite in the ablation, no more than --maps (default 100)",
+    )
+    parser.add_argument("--seed", type=seed, default=0, metavar="N")
+    parser.add_argument("--out", type=path, metavar="DIR", help="default out/paper")
+    parser.add_argument("--workers", type=count, metavar="N", help="processes (default: all cores)")
+    parser.add_argument("--json-out", metavar="FILE", help="all figures; - is stdout")
+    add_set(parser)
+    parser.add_argument(
+        "--docs", type=path, metavar="FILE", help="a page whose tables are to be these"
+    )
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Makes what is asked for; prints its tables, or JSON, and writes its files into the folder."""
+    from dynastar.bench.report import REPORTS, Asked, report_targets, write
+    from dynastar.bench.settings import read_settings
+    from dynastar.bench.tables import as_text
+    from dynastar.cli.compiling import prepare
+
     require("bench", "the tables and figures need")
     file = check_file("--json-out", arguments.json_out)
     if arguments.set and arguments.what in ("table1", "figures"):
@@ -42,7 +103,7 @@ def execute(arguments: argparse.Namespace) -> int:
     names = list(REPORTS) if arguments.what == "all" else [arguments.what]
     result: dict[str, Any] = {"seed": asked.seed, "maps": asked.maps}
 
-    def give(report: Report) -> None:
+    def give(report: "Report") -> None:
         write(report, asked.folder)
         result.update(report.found)
         if arguments.docs is not None:
@@ -56,7 +117,7 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.what == "all":
         give(report_targets(result))
     if file is not None:
-        write_json(file, result)
+        io.write_json(file, result)
     if arguments.json_out == "-":
         print(as_json(result))
     else:
@@ -66,6 +127,8 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def _check(file: Path) -> None:
     """Before hours of work: that a page is there and every place for a table in it is closed."""
+    from dynastar.bench.tables import fill
+
     if not file.is_file():
         raise InputError(f"--docs {file}: there is no such file")
     try:
@@ -76,11 +139,13 @@ def _check(file: Path) -> None:
         fill(document, name, "", file)
 
 
-def _fill(file: Path, tables: Sequence[Table]) -> None:
+def _fill(file: Path, tables: "Sequence[Table]") -> None:
     """Puts the tables where the page has a place for them."""
+    from dynastar.bench.tables import as_markdown, fill
+
     document = file.read_text(encoding="utf-8")
     for table in tables:
         if f"<!-- {table.name} -->" in document:
             document = fill(document, table.name, as_markdown(table), file)
-    with written_aside(file) as aside:
+    with io.written_aside(file) as aside:
         aside.write_text(document, encoding="utf-8")

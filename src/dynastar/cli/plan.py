@@ -1,20 +1,61 @@
 """``dynastar plan``: a path on a map."""
 
 import argparse
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from dynastar import io, planning
-from dynastar.cli.compiling import prepare
+from dynastar import io
+from dynastar.cli.arguments import add_json
 from dynastar.cli.outputs import check_file
+from dynastar.cli.parsing import distance, number, path
 from dynastar.cli.show import as_json, as_table
 from dynastar.config import choose
 from dynastar.errors import InputError
-from dynastar.grid import OccupancyGrid
-from dynastar.io.movingai import file_to_world, points_to_file
+
+if TYPE_CHECKING:
+    from dynastar.grid import OccupancyGrid
+
+DESCRIPTION = "Finds a smoothed path on a map that keeps a disc clear of obstacles."
+
+EXAMPLES = """\
+examples:
+  dynastar plan office.yaml --start 2 2 --goal 38 23 --radius 0.25
+  dynastar plan office.yaml --start 2 2 --goal 38 23 --planner astar --out plan.png
+  dynastar plan AR0011SR.map --start 239 357 --goal 194 312 --json
+
+For ROS maps X Y are metres in the map's frame. For MovingAI .map files they are integers, the
+file's column and row; a cell is 1 m, and the path has cell centres at + 0.5."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command."""
+    parser.add_argument("map", metavar="MAP", type=path, help=".yaml (ROS), .map, .npy or .txt")
+    parser.add_argument("--start", nargs=2, type=number, required=True, metavar=("X", "Y"))
+    parser.add_argument("--goal", nargs=2, type=number, required=True, metavar=("X", "Y"))
+    parser.add_argument(
+        "--planner",
+        default="improved",
+        metavar="NAME",
+        help="dijkstra, astar, jump, auto, weighted or improved (the default)",
+    )
+    parser.add_argument(
+        "--radius", type=distance, default=0.0, metavar="R", help="of the robot, m (default 0)"
+    )
+    parser.add_argument(
+        "--unknown",
+        choices=("free", "blocked"),
+        default="blocked",
+        help="what unknown cells are taken for (default blocked)",
+    )
+    add_json(parser)
+    parser.add_argument("--out", type=path, metavar="PNG", help="draw the plan into this picture")
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Plans twice, so that ``time_ms`` is warm, and prints the second."""
+    from dynastar import planning
+    from dynastar.cli.compiling import prepare
+    from dynastar.io.movingai import points_to_file
+
     choose(arguments.planner, planning.ALGORITHMS, "planner")
     grid = io.load_map(arguments.map)
     in_file = arguments.map.suffix.lower() == ".map"
@@ -51,7 +92,9 @@ def execute(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _from_file(grid: OccupancyGrid, option: str, x: float, y: float) -> tuple[float, float]:
+def _from_file(grid: "OccupancyGrid", option: str, x: float, y: float) -> tuple[float, float]:
+    from dynastar.io.movingai import file_to_world
+
     if x != int(x) or y != int(y):
         raise InputError(f"{option} {x:g} {y:g}: a .map file wants two integers, column and row")
     return file_to_world(grid, int(x), int(y))

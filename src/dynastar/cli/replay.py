@@ -1,30 +1,74 @@
 """``dynastar replay``: the navigator's answers to the scans and odometry of a recording."""
 
 import argparse
-import csv
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from dynastar.bench.settings import parsed
-from dynastar.cli.compiling import prepare
+from dynastar import io
+from dynastar.cli.arguments import PRESETS, add_json, add_set
 from dynastar.cli.outputs import make_folder
+from dynastar.cli.parsing import path
 from dynastar.cli.show import as_json, side_by_side
 from dynastar.config import choose
 from dynastar.errors import InputError, MissingPackage
 from dynastar.extras import require
-from dynastar.io.files import write_json, written_aside
-from dynastar.robot import ROBOTS
-from dynastar.ros.bridge import TAKES
-from dynastar.ros.replay import Overrides, Replay, replay
+
+if TYPE_CHECKING:
+    from dynastar.ros.replay import Replay
+
+DESCRIPTION = (
+    "Gives a recording's scans, odometry, map and goals to the navigator and says what it "
+    "commands; with other settings, too, beside the first."
+)
+
+EXAMPLES = """\
+examples:
+  dynastar run examples/office/office.toml --bag out/office-bag
+  dynastar replay out/office-bag
+  dynastar replay out/office-bag --set dwa.horizon=2 --set dwa.weights.vel=0.3
+  dynastar replay robot.mcap --robot turtlebot3_burger --pose tf --topic scan=/front/scan
+
+Writes commands.csv, summary.json and figure.png into DIR. Recordings by dynastar are ticked when they
+were and give the recorded commands; others are ticked at each scan. Nothing is simulated: the robot
+moves as it was recorded, whatever is commanded."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command."""
+    parser.add_argument(
+        "bag", metavar="BAG", type=path, help="a folder of rosbag2, or an .mcap file"
+    )
+    parser.add_argument(
+        "--robot", metavar="NAME", help="needed unless the recording is by dynastar"
+    )
+    parser.add_argument("--preset", choices=PRESETS, help="compare with this preset")
+    parser.add_argument(
+        "--topic",
+        action="append",
+        default=[],
+        metavar="NAME=TOPIC",
+        help="the recording's topic for map, scan, odom, goal_pose, amcl_pose, tf; repeatable",
+    )
+    parser.add_argument(
+        "--pose",
+        choices=("odom", "amcl", "tf"),
+        help="what says where the robot is in the map (default odom, or as recorded)",
+    )
+    parser.add_argument("--out", type=path, metavar="DIR", help="default out/replay-<bag's name>")
+    add_json(parser)
+    add_set(parser)
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Replays the recording, once more with other settings if there are any, and compares."""
     require("bags", "recordings need")
+    from dynastar.bench.settings import parsed
+    from dynastar.cli.compiling import prepare
+    from dynastar.robot import ROBOTS
+    from dynastar.ros.replay import Overrides, replay
+
     robot = None if arguments.robot is None else choose(arguments.robot, ROBOTS, "robot")
     as_it_is = Overrides(robot, pose_source=arguments.pose)
     runs = {"as recorded" if robot is None else robot.name: as_it_is}
@@ -47,6 +91,8 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def _remap(pairs: list[str]) -> dict[str, str]:
     """The table that ``NAME=TOPIC`` pairs stand for; InputError for one that is none."""
+    from dynastar.ros.bridge import TAKES
+
     names = [name.strip("/") for name in TAKES]
     table = {}
     for pair in pairs:
@@ -59,15 +105,19 @@ def _remap(pairs: list[str]) -> dict[str, str]:
     return table
 
 
-def write_folder(folder: Path, found: Mapping[str, Replay], summaries: Mapping[str, Any]) -> None:
+def write_folder(folder: Path, found: "Mapping[str, Replay]", summaries: Mapping[str, Any]) -> None:
     """Writes summary.json, commands.csv and figure.png."""
-    write_json(folder / "summary.json", summaries)
+    import csv
+
+    import numpy as np
+
+    io.write_json(folder / "summary.json", summaries)
     first = next(iter(found.values()))
     series = {name: one.commands for name, one in found.items()}
     if np.isfinite(first.recorded).any():
         series = {"recorded": first.recorded, **series}
     with (
-        written_aside(folder / "commands.csv") as aside,
+        io.written_aside(folder / "commands.csv") as aside,
         aside.open("w", newline="", encoding="utf-8") as file,
     ):
         table = csv.writer(file)

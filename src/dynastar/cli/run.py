@@ -5,23 +5,58 @@ import re
 import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from dynastar import io, metrics
-from dynastar.bench.settings import merged, read_settings
-from dynastar.cli.compiling import prepare
+from dynastar import io
+from dynastar.cli.arguments import PRESETS, add_json, add_no_gif, add_set
 from dynastar.cli.outputs import check_new, make_folder
+from dynastar.cli.parsing import path, seed
 from dynastar.cli.show import as_json, as_table
-from dynastar.episode import Episode
 from dynastar.errors import MissingPackage
 from dynastar.extras import require
-from dynastar.io.files import write_json
-from dynastar.page import write_report
-from dynastar.simulation import Scenario
+
+if TYPE_CHECKING:
+    from dynastar.episode import Episode
+    from dynastar.simulation import Scenario
+
+DESCRIPTION = (
+    "Drives a scenario in simulation; draws it and measures it. "
+    "Exit status 0 only for an arrival without contact."
+)
+
+EXAMPLES = """\
+examples:
+  dynastar run examples/office/office.toml --out out/office
+  dynastar run office.toml --seed 7 --preset paper --json > summary.json
+  dynastar run office.toml --set dwa.horizon=2 --set reverse=false
+  dynastar run office.toml --bag out/office-bag     # opens in Foxglove and RViz, see dynastar replay
+
+Writes report.html, figure.png, animation.gif, summary.json, episode.npz and config.json into DIR."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command."""
+    parser.add_argument("scenario", metavar="SCENARIO.toml", type=path)
+    parser.add_argument("--out", type=path, metavar="DIR", help="default out/<scenario's name>")
+    parser.add_argument("--seed", type=seed, metavar="N", help="instead of the scenario's")
+    parser.add_argument("--preset", choices=PRESETS, help="instead of the scenario's")
+    add_json(parser)
+    add_no_gif(parser)
+    parser.add_argument(
+        "--bag",
+        type=path,
+        metavar="DIR",
+        help="record the messages of a ROS 2 robot to this new folder",
+    )
+    add_set(parser)
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Runs the scenario, writes its folder and prints its summary."""
+    from dynastar import metrics
+    from dynastar.bench.settings import merged, read_settings
+    from dynastar.cli.compiling import prepare
+
     scenario = io.load_scenario(arguments.scenario)
     if arguments.seed is not None:
         scenario = replace(scenario, seed=arguments.seed)
@@ -49,15 +84,17 @@ def execute(arguments: argparse.Namespace) -> int:
     return 0 if arrived else 1
 
 
-def safe_name(scenario: Scenario) -> str:
+def safe_name(scenario: "Scenario") -> str:
     """The scenario's name as the name of a folder."""
     return re.sub(r"[^\w-]+", "_", scenario.name).strip("_") or "scenario"
 
 
-def write_folder(folder: Path, episode: Episode, summary: dict[str, Any], gif: bool) -> None:
+def write_folder(folder: Path, episode: "Episode", summary: dict[str, Any], gif: bool) -> None:
     """Writes the summary, the configuration, the episode, its report and its pictures."""
-    write_json(folder / "summary.json", summary)
-    write_json(folder / "config.json", {"scenario": episode.scenario, "config": episode.config})
+    from dynastar.page import write_report
+
+    io.write_json(folder / "summary.json", summary)
+    io.write_json(folder / "config.json", {"scenario": episode.scenario, "config": episode.config})
     io.save_episode(episode, folder / "episode.npz")
     write_report([episode], folder / "report.html")
     try:

@@ -1,10 +1,9 @@
 """How results reach stdout: JSON alone, or an aligned table."""
 
-import json
 from collections.abc import Mapping
 from typing import Any
 
-from dynastar.io import jsonable
+from dynastar import io
 
 # Of the numbers that commands print, by name.
 UNITS = {
@@ -28,7 +27,9 @@ UNITS = {
 
 def as_json(data: Mapping[str, Any]) -> str:
     """``data`` as JSON in which every number is finite: what is not becomes null."""
-    return json.dumps(jsonable(data), allow_nan=False)
+    import json
+
+    return json.dumps(io.jsonable(data), allow_nan=False)
 
 
 def as_table(data: Mapping[str, Any]) -> str:

@@ -2,20 +2,49 @@
 
 import argparse
 import sys
-import webbrowser
 from pathlib import Path
 
 from dynastar import io
 from dynastar.cli.outputs import check_file
+from dynastar.cli.parsing import path
 from dynastar.errors import EpisodeError, InputError
-from dynastar.page import write_report
-from dynastar.page.report import MOST
+
+DESCRIPTION = (
+    "Writes one HTML file that replays an episode, or two side by side on one clock: map, "
+    "paths, candidates with their scores, terms of Eq. 9 and tracked obstacles over time. It needs no "
+    "network."
+)
+
+EXAMPLES = """\
+examples:
+  dynastar view out/office --open
+  dynastar view out/default out/paper --out both.html
+  dynastar view failures/barn-17.npz
+
+Episodes of `dynastar run` have all that the page can show; those that were written without it lack
+candidates, terms and tracks."""
 
 EPISODE = "episode.npz"
 
 
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command."""
+    parser.add_argument(
+        "episodes", nargs="+", metavar="EPISODE", type=path, help="an .npz, or a folder of `run`"
+    )
+    parser.add_argument(
+        "--out", type=path, metavar="HTML", help="default report.html beside the first episode"
+    )
+    parser.add_argument("--open", action="store_true", help="open it in the browser")
+
+
 def execute(arguments: argparse.Namespace) -> int:
     """Writes the page and prints where it is."""
+    import webbrowser
+
+    from dynastar.page import write_report
+    from dynastar.page.report import MOST
+
     if len(arguments.episodes) > MOST:
         raise InputError(f"{len(arguments.episodes)} episodes are given: expected one or two")
     files = [_file(path) for path in arguments.episodes]
