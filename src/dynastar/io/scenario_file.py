@@ -1,6 +1,6 @@
 """Scenario files: TOML, checked key by key, so that a typo names the key and the nearest right one.
 
-``ScenarioTable`` has the top-level keys; ``[sensor]`` holds those of ``Lidar`` and of ``Noise``.
+The keys are those of ``scenario_tables``; ``[sensor]`` holds those of ``Lidar`` and of ``Noise``.
 """
 
 import math
@@ -9,19 +9,19 @@ import re
 import tomllib
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple
+from typing import Any
 
 from dynastar import simulation
-from dynastar.config import Field, checked, choose, nearest, shown
+from dynastar.config import checked, choose, nearest, shown
 from dynastar.episode import Episode
 from dynastar.errors import ConfigError, InputError, MapError, OutOfMap, ScenarioError
 from dynastar.geometry import Goal
-from dynastar.grid import OccupancyGrid, Unknown
+from dynastar.grid import OccupancyGrid
 from dynastar.io.files import MAX_TABLE_BYTES, read_bytes
 from dynastar.io.maps import load_map
-from dynastar.io.scenario_things import Metres, contains, read_mover, read_obstacle
+from dynastar.io.scenario_tables import MapTable, PlaceTable, RobotTable, ScenarioTable
+from dynastar.io.scenario_things import contains, read_mover, read_obstacle
 from dynastar.masks import SpeedScale, with_keepout, with_speed_limits
-from dynastar.navigator import Preset
 from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot
 from dynastar.simulation.scenario import Noise, Scenario
 
@@ -33,64 +33,6 @@ _DEEP = rf"{_PART}(?:\.[ \t]*{_PART}){{32}}"
 _TOKEN = re.compile(rf"(?P<deep>{_DEEP})|{_STRING}|#[^\n]*|[\w-]+|.", re.DOTALL)
 
 DATA_VARIABLE = "DYNASTAR_DATA"
-
-
-class ScenarioTable(NamedTuple):
-    """The keys of a scenario file; it needs ``map``, ``robot``, ``start``, and a goal."""
-
-    map: Any
-    robot: Any
-    start: Any
-    goals: Any = None
-    goal: Any = None
-    name: str = ""
-    world: Any = None
-    keepout: Any = None
-    speed_limit: Any = None
-    seed: Annotated[int, Field("seed of all noise", "", 0, 2**63 - 1)] = 0
-    time_limit: Annotated[
-        float, Field("time after which the mission is a timeout", "s", 0.1, 1e5)
-    ] = 300.0
-    latency: Annotated[float, Field("delay until a command takes effect", "s", 0.0, 1.0)] = 0.0
-    unknown: Annotated[Unknown, Field("how unknown space is planned")] = "blocked"
-    goal_tolerance: Annotated[
-        float, Field("distance at which a goal is reached", "m", 0.01, 5.0)
-    ] = 0.25
-    heading_tolerance: Annotated[
-        float, Field("heading error at which a goal is reached", "rad", 0.01, 3.2)
-    ] = 0.1
-    preset: Annotated[Preset, Field("the navigator's settings")] = "default"
-    sensor: Any = None
-    obstacles: Any = None
-    movers: Any = None
-    navigator: Any = None
-
-
-class MapTable(NamedTuple):
-    """A map drawn in the scenario itself: see ``OccupancyGrid.from_text``."""
-
-    rows: tuple[str, ...]
-    resolution: Annotated[float, Field("side of a cell", "m", 1e-3, 1e3)] = 1.0
-    origin: Annotated[tuple[float, float], Field("lowest corner", "m", -1e6, 1e6)] = (0.0, 0.0)
-
-
-class RobotTable(NamedTuple):
-    """A ready-made robot with changes; a footprint is a radius or a convex polygon round (0, 0)."""
-
-    base: str
-    limits: Any = None
-    radius: Annotated[float | None, Field("of a disc", "m", 0.01, 10.0)] = None
-    polygon: Annotated[
-        tuple[tuple[float, float], ...] | None, Field("corners", "m", -10.0, 10.0)
-    ] = None
-
-
-class PlaceTable(NamedTuple):
-    """Where to start or to go."""
-
-    x: Metres
-    y: Metres
-    heading: Annotated[float | None, Field("any heading if left out", "rad", -7.0, 7.0)] = None
 
 
 def load_scenario(path: str | Path) -> Scenario:

@@ -4,13 +4,14 @@ import types
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from dynastar.config import Field
-from dynastar.io.scenario_file import (
+from dynastar.io.scenario_tables import (
     MapTable,
+    MoverTable,
+    ObstacleTable,
     PlaceTable,
     RobotTable,
     ScenarioTable,
 )
-from dynastar.io.scenario_things import MoverTable, ObstacleTable
 from dynastar.masks import SpeedScale
 from dynastar.navigator import NavigatorConfig
 from dynastar.robot import ROBOTS, Lidar, Limits

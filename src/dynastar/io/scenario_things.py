@@ -2,51 +2,20 @@
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import shapely
 
-from dynastar.config import Field, checked
+from dynastar.config import checked
 from dynastar.errors import ConfigError
+from dynastar.io.scenario_tables import MoverTable, ObstacleTable
 from dynastar.simulation.scenario import AfterLast, Mover
 
 Floats = npt.NDArray[np.float64]
-Metres = Annotated[float, Field("a coordinate", "m", -1e6, 1e6)]
-_Size = Annotated[float, Field("a size", "m", 1e-3, 1e4)]
-_Seconds = Annotated[float, Field("a time", "s", 0.0, 1e6)]
-_Speed = Annotated[float, Field("a speed", "m/s", 1e-3, 50.0)]
 
 DISC_CORNERS = 24
-
-
-class ObstacleTable(NamedTuple):
-    """One shape: a box (x, y of its centre, length, width) turned by yaw, a disc, or a polygon."""
-
-    box: tuple[Metres, Metres, _Size, _Size] | None = None
-    yaw: Annotated[float | None, Field("of the box", "rad", -7.0, 7.0)] = None
-    disc: tuple[Metres, Metres, _Size] | None = None
-    polygon: tuple[tuple[Metres, Metres], ...] | None = None
-
-
-class MoverTable(NamedTuple):
-    """A disc and one way of moving; ``from_`` is written ``from`` in the file.
-
-    Waypoints are walked at ``speed``, with a rest of ``pause`` at each; ``start`` delays the first
-    step. A track has its own times, so it takes neither.
-    """
-
-    radius: Annotated[float, Field("of the disc", "m", 0.01, 10.0)]
-    waypoints: tuple[tuple[Metres, Metres], ...] | None = None
-    from_: tuple[Metres, Metres] | None = None
-    track: tuple[tuple[_Seconds, Metres, Metres], ...] | None = None
-    speed: _Speed | None = None
-    pause: _Seconds | None = None
-    after: AfterLast | None = None
-    velocity: Annotated[tuple[float, float] | None, Field("a velocity", "m/s", -50.0, 50.0)] = None
-    start: _Seconds | None = None
-
 
 _TAKES = {
     "waypoints": {"speed", "pause", "after", "start"},
