@@ -25,9 +25,9 @@ BASE = "default"  # the arm that the others are compared with
 SUITES = ("paper", "people")
 OF_ARMS = ("ablation", "arms", "follower", "paper", "own_maps", "controllers/printed",
            "controllers/base", "controllers/costmap", "controllers/route")  # fmt: skip
-SOURCES = (*OF_ARMS, "driven", "suites/people", "suites/people_crowd", "suites/people_scripts",
-           "suites/people_sites", "suites/people_witness",
-           "suites/people_witness_kernels")  # fmt: skip
+SOURCES = (*OF_ARMS, "driven", "suites/people", "suites/people_crowd", "suites/people_routes",
+           "suites/people_scripts", "suites/people_sites", "suites/people_witness",
+           "suites/people_witness_kernels", "suites/people_witness_search")  # fmt: skip
 
 Row = dict[str, Any]
 

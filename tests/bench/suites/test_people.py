@@ -8,7 +8,7 @@ import shapely
 
 from dynastar.bench.missions import Options
 from dynastar.bench.suites import people as suite
-from dynastar.bench.suites import people_crowd, people_scripts, people_witness
+from dynastar.bench.suites import people_crowd, people_routes, people_scripts, people_witness
 from dynastar.bench.suites.people_sites import SITES, Site
 from dynastar.errors import DataError
 from dynastar.geometry import Pose2D
@@ -79,7 +79,7 @@ def test_walkers_keep_their_speeds_and_sizes(number):
 
 
 def walks(manner, seed=0):
-    route = people_scripts.Route(np.array([(0.0, 0.0), (20.0, 0.0)]), 1.0)
+    route = people_routes.Route(np.array([(0.0, 0.0), (20.0, 0.0)]), 1.0)
     random = np.random.default_rng(seed)
     return np.diff(people_scripts.progress(20.0, route, manner, random, 60.0)) / people_scripts.STEP
 
@@ -100,19 +100,19 @@ def test_manners_do_what_they_say():
 def test_roles_walk_where_they_say():
     made = suite.make(0, 4)
     random = np.random.default_rng(0)
-    scene = people_scripts.Scene(made.site, made.robot, random, 0.25, made.site.planner(0.33))
+    scene = people_routes.Scene(made.site, made.robot, random, 0.25, made.site.planner(0.33))
     start, goal = np.array(made.site.start), np.array(made.site.goal)
 
     def ends(role):
-        points = people_scripts.ROLES[role](scene).points
+        points = people_routes.ROLES[role](scene).points
         return points[0], points[-1]
 
     begin, end = ends("oncoming")
     assert np.hypot(*(begin - goal)) < np.hypot(*(begin - start))
     assert np.hypot(*(end - start)) < np.hypot(*(end - goal))
-    assert people_scripts.overtaking(scene).speed > made.robot.limits.v_max
-    assert people_scripts.slow_ahead(scene).speed < made.robot.limits.v_max
-    crossing = people_scripts.crossing(scene)
+    assert people_routes.overtaking(scene).speed > made.robot.limits.v_max
+    assert people_routes.slow_ahead(scene).speed < made.robot.limits.v_max
+    crossing = people_routes.crossing(scene)
     assert (
         shapely.LineString(crossing.points).distance(shapely.LineString(made.site.way.points)) < 0.3
     )

@@ -1,6 +1,6 @@
 """Pedestrians who react to the robot: who walks where, and a robot that gets through among them.
 
-They take the same roles as scripted walkers (see ``people_scripts``) and walk their routes to and fro,
+They take the same roles as scripted walkers (see ``people_routes``) and walk their routes to and fro,
 but JuPedSim moves them. A world is kept only if a simple robot gets through: it drives its way at no
 more than full speed, turns on the spot at corners, stops while a person is near ahead, creeps on after
 a while if they stay there but leave 0.2 m, and arrives in time with 2 cm or more to everybody. It must
@@ -12,14 +12,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.bench.suites.people_scripts import (
-    PLAN_GAP,
-    ROLES,
-    SPEEDS,
-    START_GAP,
-    Scene,
-    wander,
-)
+from dynastar.bench.suites.people_routes import PLAN_GAP, ROLES, SPEEDS, Scene, wander
+from dynastar.bench.suites.people_scripts import START_GAP
 from dynastar.bench.suites.people_sites import Random, Site
 from dynastar.geometry import Pose2D, wrap_angle
 from dynastar.path import Path

@@ -24,6 +24,7 @@ import numpy.typing as npt
 
 from dynastar.bench.suites import people_witness_kernels as kernels
 from dynastar.bench.suites.people_sites import Point
+from dynastar.bench.suites.people_witness_search import search
 from dynastar.clearance import distance_field
 from dynastar.geometry import Pose2D
 from dynastar.grid import OccupancyGrid
@@ -84,23 +85,18 @@ def find_witness(
     movers, step = Movers(walkers), TICK / SAMPLES
     count = SAMPLES * int(seconds / TICK)
     positions = np.array([movers.at(k * step) for k in range(count)])
-    legs, _ = kernels.search(
-        (row, column, round(heading / (math.pi / 4)) % 8, FIRST),
-        (PITCH, TICK, SAMPLES, float(offset[0]), float(offset[1]), cell),
-        gaps,
-        np.ascontiguousarray(grid.occupied),
-        to_go,
-        positions.reshape(count, -1, 2),
-        movers.radii,
-        (radius + WALL_GAP, radius + WALKER_GAP, REACT),
-        MOVES,
-        TURNS,
-        (
+    task = kernels.Task(
+        kernels.Lattice(PITCH, TICK, SAMPLES, float(offset[0]), float(offset[1]), cell),
+        kernels.Space(gaps, np.ascontiguousarray(grid.occupied), to_go),
+        kernels.People(positions.reshape(count, -1, 2), movers.radii),
+        kernels.Needs(radius + WALL_GAP, radius + WALKER_GAP, REACT),
+        kernels.Drive(
             limits.v_max, -limits.v_min, limits.v_accel, limits.v_brake,
-            limits.omega_max, limits.omega_accel, limits.omega_brake,
+            limits.omega_max, limits.omega_accel, limits.omega_brake, MOVES, TURNS,
         ),
-        MOST_STOPS,
     )  # fmt: skip
+    begin = (row, column, round(heading / (math.pi / 4)) % 8, FIRST)
+    legs, _ = search(begin, task, MOST_STOPS)
     if len(legs) == 0 and not to_go[row, column] <= 0.0:
         return None
     legs = legs * np.array([TICK, TICK, 1.0, math.pi / 4, math.pi / 4])
