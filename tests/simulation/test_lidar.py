@@ -153,7 +153,7 @@ def test_beams_leap_over_free_cells():
         ranges = np.empty(lidar.beams)
         edges, discs, frame = np.empty((0, 4)), np.empty((0, 3)), tuple(map(float, grid.frame))
         began = process_time()
-        kernels.cast(free, frame, edges, discs, sensor, lidar.increment, 30.0, ranges)
+        kernels.cast(free, frame, edges, discs, sensor, (lidar.increment, 30.0), ranges)
         return process_time() - began, ranges
 
     stepping = np.minimum(leaping, 1)

@@ -61,8 +61,7 @@ class LidarSimulator:
             self._edges,
             discs,
             (sensor.x, sensor.y, sensor.theta + angle_min),
-            lidar.increment,
-            lidar.range_max,
+            (lidar.increment, lidar.range_max),
             ranges,
         )
         if self._range_bound > 0.0:

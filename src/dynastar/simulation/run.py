@@ -92,15 +92,7 @@ def drive(
     faults = FaultInjector(scenario.faults, world, controller, recorder.event, seed)
     tracer = Tracer(controller) if trace else None
     ending, ticks = None, 0
-    with tqdm(
-        total=scenario.time_limit,
-        desc=scenario.name,
-        unit="s",
-        file=sys.stderr,
-        disable=not progress,
-        delay=1e-6,  # nothing is shown of a mission that cannot begin
-        bar_format="{desc}: {n:.1f} of at most {total:.0f} simulated s [{elapsed}]",
-    ) as bar:
+    with _bar(scenario, progress) as bar:
         while ending is None:
             faults.begin()
             true_state = RobotState(world.time, world.sensed_pose(), world.twist)
@@ -126,6 +118,19 @@ def drive(
         recorder.contact(command, reason)
     episode = recorder.episode(outcome, reason, config, seed)
     return episode if tracer is None else replace(episode, trace=tracer.trace())
+
+
+def _bar(scenario: Scenario, progress: bool) -> Any:
+    """A bar on stderr, in simulated seconds; it shows nothing unless ``progress`` is set."""
+    return tqdm(
+        total=scenario.time_limit,
+        desc=scenario.name,
+        unit="s",
+        file=sys.stderr,
+        disable=not progress,
+        delay=1e-6,  # nothing is shown of a mission that cannot begin
+        bar_format="{desc}: {n:.1f} of at most {total:.0f} simulated s [{elapsed}]",
+    )
 
 
 def _explained(status: Any, scenario: Scenario) -> Any:
