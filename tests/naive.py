@@ -6,6 +6,8 @@ import math
 import numpy as np
 import shapely
 
+from dynastar.errors import NoPath, StartOccupied
+
 STRAIGHT, DIAGONAL = 985, 1393  # the search's units: 1393 / 985 for sqrt(2)
 STEPS = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)]
 
@@ -39,6 +41,30 @@ def shortest(occupied, start):
                 lengths[n] = longer
                 heapq.heappush(queue, (longer, n))
     return lengths
+
+
+def way_out(blocked, inflated, start, goal, radius):
+    """Lengths of the shortest way out that leads on and of the path from its end, or the error.
+
+    The exits are tried one after another, each by a search of its own.
+    """
+    first, reach = start, math.ceil(4.0 * radius) + 4
+    if blocked[start]:
+        near = [(math.dist(start, cell), *map(int, cell)) for cell in np.argwhere(~blocked)]
+        away, *first = min(near, default=(math.inf, 0, 0))
+        first = tuple(first)
+        if radius <= 0.0 or away > radius + 2.0:
+            return StartOccupied
+    outside = np.ones_like(blocked)
+    outside[max(start[0] - reach, 0) : start[0] + reach + 1,
+            max(start[1] - reach, 0) : start[1] + reach + 1] = False  # fmt: skip
+    lengths = shortest(blocked | outside, first)
+    exits = sorted((round(g, 6), cell) for cell, g in lengths.items() if not inflated[cell])
+    for length, cell in exits:
+        rest = shortest(inflated, cell)
+        if goal in rest:
+            return math.dist(start, first) + length, rest[goal]
+    return NoPath if exits else StartOccupied
 
 
 def h(config, n, goal):

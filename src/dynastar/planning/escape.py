@@ -1,11 +1,12 @@
-"""The way out for a robot that stands too close to something: the shortest to where it fits."""
+"""The way out for a robot that is closer to something than its radius."""
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.errors import NoPath, StartOccupied
+from dynastar.planning.neighbours import components
 from dynastar.planning.search import Cell, Cells, SearchGrid
 
 Mask = npt.NDArray[np.bool_]
@@ -16,31 +17,44 @@ def reach_of_escape(radius: float) -> int:
     return math.ceil(4.0 * radius) + 4
 
 
-def ways_out(blocked: Mask, inflated: Mask, cell: Cell, radius: float) -> Iterator[Cells]:
-    """Ways (n, 2) of cells from ``cell`` to cells that are not inflated, the shortest first.
+def way_out(blocked: Mask, inflated: Mask, start: Cell, goal: Cell, radius: float) -> Cells:
+    """Shortest way (n, 2) out of the inflation to a cell that is connected with ``goal``.
 
-    They lead through unblocked cells, no further than ``reach_of_escape``. A blocked ``cell`` is
-    first left straight for the nearest free one within ``radius`` + 2 cells; with radius 0 not.
+    ``blocked`` and ``inflated`` are [rows, columns], cells are (row, column), ``radius`` is in
+    cells. The way leads through unblocked cells, at most ``reach_of_escape`` rows and columns from
+    ``start``. A blocked start is first left straight for the nearest unblocked cell within
+    ``radius`` + 2 cells, unless the radius is 0.
+
+    Raises StartOccupied if the way out reaches no cell outside the inflation, and NoPath if none of
+    the cells that it reaches is connected with the goal.
     """
     reach = reach_of_escape(radius)
-    top, left = max(cell[0] - reach, 0), max(cell[1] - reach, 0)
-    window = np.s_[top : cell[0] + reach + 1, left : cell[1] + reach + 1]
-    free = ~blocked[window]
-    here = (cell[0] - top, cell[1] - left)
-    first = here
-    if not free[here]:
-        rows, columns = np.nonzero(free)
-        away = np.hypot(rows - here[0], columns - here[1])
-        if radius <= 0.0 or len(away) == 0 or away.min() > radius + 2.0:
-            return
-        first = (int(rows[away.argmin()]), int(columns[away.argmin()]))
-    around = SearchGrid(~free)
-    lengths = around.flood(first)
+    top, left = max(start[0] - reach, 0), max(start[1] - reach, 0)
+    window = np.s_[top : start[0] + reach + 1, left : start[1] + reach + 1]
+    near = SearchGrid(blocked[window])
+    here = start[0] - top, start[1] - left
+    first = here if near.is_free(here) else _nearest_free(near, here, radius)
+    if first is None:
+        raise StartOccupied(f"no unblocked cell is near enough to the blocked cell {start}")
+    lengths = near.flood(first)
     lengths[inflated[window]] = np.inf
-    order = np.argsort(lengths, axis=None, kind="stable")
-    for flat in order[: int(np.isfinite(lengths).sum())]:
-        row, column = divmod(int(flat), lengths.shape[1])
-        way = around.way_to((row, column))
-        if first != here:
-            way = np.vstack([np.array([here], np.int32), way])
-        yield way + np.array([top, left], np.int32)
+    if np.isinf(lengths).all():
+        raise StartOccupied(f"no cell outside the inflation is reached from cell {start}")
+    parts = components(~inflated)
+    lengths[parts[window] != parts[goal]] = np.inf
+    if np.isinf(lengths).all():
+        raise NoPath(f"no way out of the inflation leads from cell {start} to cell {goal}")
+    row, column = divmod(int(lengths.argmin()), lengths.shape[1])
+    way = near.way_to((row, column))
+    if first != here:
+        way = np.vstack([np.array([here], np.int32), way])
+    return way + np.array([top, left], np.int32)
+
+
+def _nearest_free(grid: SearchGrid, cell: Cell, radius: float) -> Cell | None:
+    """Nearest free cell of a grid, or None if it is farther than ``radius`` + 2 cells."""
+    rows, columns = np.nonzero(~grid.occupied)
+    away = np.hypot(rows - cell[0], columns - cell[1])
+    if radius <= 0.0 or len(away) == 0 or away.min() > radius + 2.0:
+        return None
+    return int(rows[away.argmin()]), int(columns[away.argmin()])

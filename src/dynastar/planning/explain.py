@@ -2,13 +2,13 @@
 
 import math
 
-import cv2
 import numpy as np
 import numpy.typing as npt
 
 from dynastar.clearance import distance_to_squares
 from dynastar.errors import GoalOccupied, NoPath, OutOfMap, PlanningError, StartOccupied
 from dynastar.grid import OccupancyGrid, Unknown
+from dynastar.planning.neighbours import components
 from dynastar.planning.search import SearchGrid
 
 Point = tuple[float, float]
@@ -166,8 +166,8 @@ def _widest(
 
 
 def _connected(free: npt.NDArray[np.bool_], ends: tuple[tuple[int, int], tuple[int, int]]) -> bool:
-    """Whether two cells are free and connected; nothing squeezes between two blocked corners."""
-    _, parts = cv2.connectedComponents(free.view(np.uint8), connectivity=4)
+    """Whether two cells are free and connected."""
+    parts = components(free)
     return bool(parts[ends[0]] == parts[ends[1]] != 0)
 
 

@@ -6,6 +6,7 @@ is blocked; a free cell with nothing free round it has the bit of a diagonal, wh
 a diagonal step needs both cells beside it free (no corner is cut).
 """
 
+import cv2
 import numpy as np
 import numpy.typing as npt
 
@@ -64,6 +65,17 @@ def corner_turns(near: int) -> int:
 
 
 TURNS = np.array([corner_turns(near) for near in range(256)], np.uint8)
+
+
+def components(free: npt.NDArray[np.bool_]) -> npt.NDArray[np.int32]:
+    """Label each cell [rows, columns] with the number of its connected component; 0 if blocked.
+
+    Legal steps connect two cells exactly if they are 4-connected, for a diagonal step needs both
+    cells beside it free.
+    """
+    labels: npt.NDArray[np.int32]
+    _, labels = cv2.connectedComponents(free.view(np.uint8), connectivity=4)
+    return labels
 
 
 @njit(cache=True)

@@ -24,7 +24,7 @@ from dynastar.geometry import as_point
 from dynastar.grid import OccupancyGrid, Unknown
 from dynastar.path import Path
 from dynastar.planning.any_angle import straighten
-from dynastar.planning.escape import reach_of_escape, ways_out
+from dynastar.planning.escape import reach_of_escape, way_out
 from dynastar.planning.explain import explained
 from dynastar.planning.heuristic import HeuristicConfig
 from dynastar.planning.search import (
@@ -193,15 +193,8 @@ class GridPlanner:
         goal_cell = self._fitting_cell(goal)
         if goal_cell is None:
             raise GoalOccupied(self._misfit("goal", goal))
-        start_cell = self._fitting_cell(start)
-        if start_cell is not None:
-            way_out = np.array([start_cell], np.int32)
-            found = self._find(start_cell, goal_cell, explored, planner)
-        else:
-            way_out, found = self._find_from_inside(start, goal_cell, explored, planner)
-        lead = _without_repeats(np.vstack([[start], way_out + 0.5]))
-        if start_cell is not None:
-            lead = lead[:1]
+        way, found = self._search_from(start, goal_cell, explored, planner)
+        lead = _without_repeats(np.vstack([[start], way + 0.5]))
         centres = found.cells + 0.5
         if tuple(start_xy) == tuple(goal_xy):
             centres = centres[:0]
@@ -222,8 +215,8 @@ class GridPlanner:
             planner=planner,
             path=self._path(line, start_xy, goal_xy),
             grid_path=self._path(grid_line, start_xy, goal_xy),
-            cells=np.vstack([way_out[:-1], found.cells]),
-            cost=found.cost + float(np.hypot(*np.diff(way_out, axis=0).T).sum()),
+            cells=np.vstack([way[:-1], found.cells]),
+            cost=found.cost + float(np.hypot(*np.diff(way, axis=0).T).sum()),
             expanded=found.expanded,
             explored=found.explored,
             time_ms=time_ms,
@@ -243,34 +236,29 @@ class GridPlanner:
         at = first_contact(self._blocked, cells, float(radius_cells))
         return None if at < 0.0 else at * self.grid.resolution
 
-    def _find(self, start: Cell, goal: Cell, explored: bool, planner: str) -> SearchResult:
-        try:
-            return self._search.search(start, goal, planner, self.config.heuristic, explored)
-        except NoPath:
-            ends = self.grid.cell_to_world(*start), self.grid.cell_to_world(*goal)
-            words = " to ".join(f"({x:.4g}, {y:.4g})" for x, y in ends)
-            raise NoPath(f"no way leads from {words}") from None
-
-    def _find_from_inside(
+    def _search_from(
         self, start: Point, goal: Cell, explored: bool, planner: str
     ) -> tuple[Cells, SearchResult]:
-        """The shortest way out of the inflation that leads on to the goal, and the rest."""
-        cell = (int(start[0]), int(start[1]))
-        no_path: NoPath | None = None
-        for way in ways_out(self.blocked, self.inflated, cell, self._radius_cells):
-            exit_cell = (int(way[-1, 0]), int(way[-1, 1]))
-            if no_path is not None and self._search.reached(exit_cell):
-                continue
-            try:
-                return way, self._find(exit_cell, goal, explored, planner)
-            except NoPath as error:
-                no_path = error
-        if no_path is not None:
-            raise no_path
-        looked = reach_of_escape(self._radius_cells) * self.grid.resolution
-        raise StartOccupied(
-            f"{self._misfit('start', start)}, and no way out was found within {looked:.3g} m"
-        )
+        """The shortest way out of the inflation that leads on to the goal, and the path from its end.
+
+        The way is empty where the start is outside the inflation.
+        """
+        cell, way = self._fitting_cell(start), np.empty((0, 2), np.int32)
+        try:
+            if cell is None:
+                here = int(start[0]), int(start[1])
+                way = way_out(self.blocked, self.inflated, here, goal, self._radius_cells)
+                cell = int(way[-1, 0]), int(way[-1, 1])
+            return way, self._search.search(cell, goal, planner, self.config.heuristic, explored)
+        except NoPath:
+            ends = self.grid.frame.to_world(*start), self.grid.cell_to_world(*goal)
+            words = " to ".join(f"({x:.4g}, {y:.4g})" for x, y in ends)
+            raise NoPath(f"no way leads from {words}") from None
+        except StartOccupied:
+            looked = reach_of_escape(self._radius_cells) * self.grid.resolution
+            raise StartOccupied(
+                f"{self._misfit('start', start)}, and no way out was found within {looked:.3g} m"
+            ) from None
 
     def _point(self, xy: Point, name: str) -> Point:
         """(row, column) of a world point in fractions of cells."""
