@@ -3,13 +3,11 @@
 import math
 
 import numpy as np
-import numpy.typing as npt
 
 from dynastar.errors import NoPath, StartOccupied
+from dynastar.planning.inflated import InflatedGrid
 from dynastar.planning.neighbours import components
 from dynastar.planning.search import Cell, Cells, SearchGrid
-
-Mask = npt.NDArray[np.bool_]
 
 
 def reach_of_escape(radius: float) -> int:
@@ -17,30 +15,30 @@ def reach_of_escape(radius: float) -> int:
     return math.ceil(4.0 * radius) + 4
 
 
-def way_out(blocked: Mask, inflated: Mask, start: Cell, goal: Cell, radius: float) -> Cells:
+def way_out(grid: InflatedGrid, start: Cell, goal: Cell) -> Cells:
     """Shortest way (n, 2) out of the inflation to a cell that is connected with ``goal``.
 
-    ``blocked`` and ``inflated`` are [rows, columns], cells are (row, column), ``radius`` is in
-    cells. The way leads through unblocked cells, at most ``reach_of_escape`` rows and columns from
-    ``start``. A blocked start is first left straight for the nearest unblocked cell within
-    ``radius`` + 2 cells, unless the radius is 0.
+    The way leads through unblocked cells, at most ``reach_of_escape`` rows and columns from
+    ``start``. A blocked start is first left straight for the nearest unblocked cell within the
+    radius + 2 cells, unless the radius is 0.
 
     Raises StartOccupied if the way out reaches no cell outside the inflation, and NoPath if none of
     the cells that it reaches is connected with the goal.
     """
-    reach = reach_of_escape(radius)
+    reach = reach_of_escape(grid.radius)
     top, left = max(start[0] - reach, 0), max(start[1] - reach, 0)
     window = np.s_[top : start[0] + reach + 1, left : start[1] + reach + 1]
-    near = SearchGrid(blocked[window])
+    near = SearchGrid(grid.blocked[window])
     here = start[0] - top, start[1] - left
-    first = here if near.is_free(here) else _nearest_free(near, here, radius)
+    first = here if near.is_free(here) else _nearest_free(near, here, grid.radius)
     if first is None:
         raise StartOccupied(f"no unblocked cell is near enough to the blocked cell {start}")
+    free = ~grid.search.occupied
     lengths = near.flood(first)
-    lengths[inflated[window]] = np.inf
+    lengths[~free[window]] = np.inf
     if np.isinf(lengths).all():
         raise StartOccupied(f"no cell outside the inflation is reached from cell {start}")
-    parts = components(~inflated)
+    parts = components(free)
     lengths[parts[window] != parts[goal]] = np.inf
     if np.isinf(lengths).all():
         raise NoPath(f"no way out of the inflation leads from cell {start} to cell {goal}")

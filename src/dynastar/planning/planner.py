@@ -1,7 +1,6 @@
 """Planning on a map: search, way out of the inflation, smoothing, and the errors in metres."""
 
 import functools
-import math
 import time
 from dataclasses import dataclass
 from typing import Annotated, Literal, NamedTuple
@@ -9,7 +8,6 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.clearance import inflate
 from dynastar.config import Field, choose, self_checking
 from dynastar.errors import (
     ConfigError,
@@ -27,15 +25,9 @@ from dynastar.planning.any_angle import straighten
 from dynastar.planning.escape import reach_of_escape, way_out
 from dynastar.planning.explain import explained
 from dynastar.planning.heuristic import HeuristicConfig
-from dynastar.planning.search import (
-    ALGORITHMS,
-    Cell,
-    Cells,
-    SearchGrid,
-    SearchResult,
-    check_window,
-)
-from dynastar.planning.segments import first_contact, is_clear, mask_bytes
+from dynastar.planning.inflated import InflatedGrid
+from dynastar.planning.search import ALGORITHMS, Cell, Cells, SearchGrid, SearchResult
+from dynastar.planning.segments import first_contact, mask_bytes
 from dynastar.planning.smoothing import smooth
 
 Mask = npt.NDArray[np.bool_]
@@ -113,61 +105,26 @@ class GridPlanner:
         self.grid = grid
         self.radius = float(radius)
         self.config = config
-        self._radius_cells = self.radius / grid.resolution
-        self._blocked = mask_bytes(grid.blocked(unknown))
-        self._search = SearchGrid(inflate(self._blocked, self._radius_cells), self._blocked, cell)
-        self._stale: tuple[int, int, int, int] | None = (
-            None  # marked since: top, left, bottom, right
+        self._inflated_grid = InflatedGrid(
+            grid.blocked(unknown), self.radius / grid.resolution, cell
         )
 
     @property
     def blocked(self) -> Mask:
         """Where something is, [rows, columns], read-only."""
-        mask = self._blocked.view(np.bool_)
-        mask.flags.writeable = False
-        return mask
+        return self._inflated_grid.blocked
 
     @property
     def inflated(self) -> Mask:
         """Where the disc's centre may not be, [rows, columns]; a copy."""
-        self._inflate_stale()
-        return self._search.occupied
+        return self._inflated_grid.search.occupied
 
     def mark(self, row0: int, col0: int, patch_blocked: npt.ArrayLike) -> None:
-        """New truth for the window of the map at (row0, col0): true where something is now.
+        """Replace the window of the map at (row0, col0), true where something is now.
 
-        What follows from it is worked out in the window's surroundings when the next plan asks for
-        it. Raises OutOfMap if the window leaves the map.
+        The next plan takes it into account. Raises OutOfMap if the window leaves the map.
         """
-        patch = np.asarray(patch_blocked, dtype=bool)
-        check_window(row0, col0, patch.shape, (self.grid.rows, self.grid.columns))
-        bottom, right = row0 + patch.shape[0], col0 + patch.shape[1]
-        self._blocked[row0:bottom, col0:right] = patch
-        self._search.recount()
-        if self._stale is not None:
-            top, left, low, side = self._stale
-            row0, col0 = min(row0, top), min(col0, left)
-            bottom, right = max(bottom, low), max(right, side)
-        self._stale = row0, col0, bottom, right
-
-    def _inflate_stale(self) -> None:
-        """Inflates anew what was marked since the last plan."""
-        if self._stale is None:
-            return
-        row0, col0, bottom, right = self._stale
-        self._stale = None
-        reach = math.ceil(self._radius_cells + 0.5)
-        top, left = max(row0 - reach, 0), max(col0 - reach, 0)
-        bottom, right = min(bottom + reach, self.grid.rows), min(right + reach, self.grid.columns)
-        seen_top, seen_left = max(top - reach, 0), max(left - reach, 0)
-        seen = inflate(
-            self._blocked[seen_top : bottom + reach, seen_left : right + reach], self._radius_cells
-        )
-        self._search.update(
-            top,
-            left,
-            seen[top - seen_top : bottom - seen_top, left - seen_left : right - seen_left],
-        )
+        self._inflated_grid.mark(row0, col0, patch_blocked)
 
     def plan(
         self, start_xy: Point, goal_xy: Point, explored: bool = False, planner: str = ""
@@ -188,9 +145,9 @@ class GridPlanner:
         start_xy, goal_xy = as_point(start_xy, "the start"), as_point(goal_xy, "the goal")
         warm_up()
         began = time.perf_counter()
-        self._inflate_stale()
+        inflated = self._inflated_grid
         start, goal = self._point(start_xy, "start"), self._point(goal_xy, "goal")
-        goal_cell = self._fitting_cell(goal)
+        goal_cell = inflated.fitting_cell(goal)
         if goal_cell is None:
             raise GoalOccupied(self._misfit("goal", goal))
         way, found = self._search_from(start, goal_cell, explored, planner)
@@ -203,11 +160,11 @@ class GridPlanner:
         line = grid_line
         if self.config.smoothing != "none":
             rounding = self.config.rounding / self.grid.resolution
-            lead = smooth(self._blocked, lead, 0.0)
+            lead = smooth(inflated.bytes, lead, 0.0)
             if self.config.smoothing == "any-angle":
-                taut = smooth(self._blocked, main, self._radius_cells)
-                main = straighten(self._blocked, main, self._radius_cells, taut)
-            main = smooth(self._blocked, main, self._radius_cells, rounding)
+                taut = smooth(inflated.bytes, main, inflated.radius)
+                main = straighten(inflated.bytes, main, inflated.radius, taut)
+            main = smooth(inflated.bytes, main, inflated.radius, rounding)
             line = np.vstack([lead, main[1:]])
         time_ms = 1e3 * (time.perf_counter() - began)
         lead_steps = np.diff(lead, axis=0)
@@ -232,8 +189,10 @@ class GridPlanner:
         cells = self.grid.frame.points_to_grid(points)
         if len(cells) == 1:
             cells = np.repeat(cells, 2, axis=0)
-        radius_cells = self._radius_cells if radius is None else radius / self.grid.resolution
-        at = first_contact(self._blocked, cells, float(radius_cells))
+        radius_cells = (
+            self._inflated_grid.radius if radius is None else radius / self.grid.resolution
+        )
+        at = first_contact(self._inflated_grid.bytes, cells, float(radius_cells))
         return None if at < 0.0 else at * self.grid.resolution
 
     def _search_from(
@@ -243,19 +202,20 @@ class GridPlanner:
 
         The way is empty where the start is outside the inflation.
         """
-        cell, way = self._fitting_cell(start), np.empty((0, 2), np.int32)
+        inflated = self._inflated_grid
+        cell, way = inflated.fitting_cell(start), np.empty((0, 2), np.int32)
         try:
             if cell is None:
                 here = int(start[0]), int(start[1])
-                way = way_out(self.blocked, self.inflated, here, goal, self._radius_cells)
+                way = way_out(inflated, here, goal)
                 cell = int(way[-1, 0]), int(way[-1, 1])
-            return way, self._search.search(cell, goal, planner, self.config.heuristic, explored)
+            return way, inflated.search.search(cell, goal, planner, self.config.heuristic, explored)
         except NoPath:
             ends = self.grid.frame.to_world(*start), self.grid.cell_to_world(*goal)
             words = " to ".join(f"({x:.4g}, {y:.4g})" for x, y in ends)
             raise NoPath(f"no way leads from {words}") from None
         except StartOccupied:
-            looked = reach_of_escape(self._radius_cells) * self.grid.resolution
+            looked = reach_of_escape(inflated.radius) * self.grid.resolution
             raise StartOccupied(
                 f"{self._misfit('start', start)}, and no way out was found within {looked:.3g} m"
             ) from None
@@ -269,18 +229,6 @@ class GridPlanner:
                 f"{self.grid.extent()}"
             )
         return row, column
-
-    def _fitting_cell(self, point: Point) -> Cell | None:
-        """The nearest cell from whose centre the disc can go straight to a point, or None."""
-        row, column = int(point[0]), int(point[1])
-        near = [(row + i, column + j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
-        near.sort(key=lambda cell: math.dist(point, (cell[0] + 0.5, cell[1] + 0.5)))
-        for r, c in near:
-            if not self._search.is_free((r, c)):
-                continue
-            if is_clear(self._blocked, *point, r + 0.5, c + 0.5, self._radius_cells):
-                return r, c
-        return None
 
     def _misfit(self, name: str, point: Point) -> str:
         """Words for a point where the disc does not fit; ``explained`` says why."""

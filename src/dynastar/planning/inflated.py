@@ -1,0 +1,92 @@
+"""The cells where a disc fits on a map whose obstacles change."""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.clearance import inflate
+from dynastar.planning.search import Cell, SearchGrid, check_window
+from dynastar.planning.segments import is_clear, mask_bytes
+
+Mask = npt.NDArray[np.bool_]
+Point = tuple[float, float]
+
+
+class InflatedGrid:
+    """The blocked cells [rows, columns] of a map, and the grid to search, inflated by ``radius`` cells.
+
+    P of Eq. 2 counts the blocked cells; a cell of the map is ``cell`` cells wide.
+    """
+
+    def __init__(self, blocked: Mask, radius: float, cell: int) -> None:
+        self.radius = radius
+        self.bytes = mask_bytes(blocked)  # 1 where a cell is blocked
+        self._search = SearchGrid(inflate(self.bytes, radius), self.bytes, cell)
+        self._stale: tuple[int, int, int, int] | None = None  # marked: top, left, bottom, right
+
+    @property
+    def blocked(self) -> Mask:
+        """True where a cell is blocked, [rows, columns]; read-only."""
+        mask = self.bytes.view(np.bool_)
+        mask.flags.writeable = False
+        return mask
+
+    @property
+    def search(self) -> SearchGrid:
+        """The inflated grid."""
+        self._inflate_stale()
+        return self._search
+
+    def mark(self, row0: int, col0: int, patch_blocked: npt.ArrayLike) -> None:
+        """Replace the window at (row0, col0), true where a cell is blocked.
+
+        The inflation follows when ``search`` is next used. Raises OutOfMap if the window leaves the
+        map.
+        """
+        patch = np.asarray(patch_blocked, dtype=bool)
+        check_window(row0, col0, patch.shape, self.bytes.shape)
+        bottom, right = row0 + patch.shape[0], col0 + patch.shape[1]
+        self.bytes[row0:bottom, col0:right] = patch
+        self._search.recount()
+        if self._stale is not None:
+            top, left, low, side = self._stale
+            row0, col0 = min(row0, top), min(col0, left)
+            bottom, right = max(bottom, low), max(right, side)
+        self._stale = row0, col0, bottom, right
+
+    def fitting_cell(self, point: Point) -> Cell | None:
+        """Nearest cell from whose centre the disc can go straight to a point, or None.
+
+        ``point`` is (row, column) in fractions of cells; its own cell and the 8 around it count.
+        """
+        search = self.search
+        row, column = int(point[0]), int(point[1])
+        near = [(row + i, column + j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
+        near.sort(key=lambda cell: math.dist(point, (cell[0] + 0.5, cell[1] + 0.5)))
+        for r, c in near:
+            if not search.is_free((r, c)):
+                continue
+            if is_clear(self.bytes, *point, r + 0.5, c + 0.5, self.radius):
+                return r, c
+        return None
+
+    def _inflate_stale(self) -> None:
+        """Inflate again what was marked since the last search."""
+        if self._stale is None:
+            return
+        row0, col0, bottom, right = self._stale
+        self._stale = None
+        rows, columns = self.bytes.shape
+        reach = math.ceil(self.radius + 0.5)
+        top, left = max(row0 - reach, 0), max(col0 - reach, 0)
+        bottom, right = min(bottom + reach, rows), min(right + reach, columns)
+        seen_top, seen_left = max(top - reach, 0), max(left - reach, 0)
+        seen = inflate(
+            self.bytes[seen_top : bottom + reach, seen_left : right + reach], self.radius
+        )
+        self._search.update(
+            top,
+            left,
+            seen[top - seen_top : bottom - seen_top, left - seen_left : right - seen_left],
+        )
