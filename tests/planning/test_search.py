@@ -254,7 +254,6 @@ def test_auto_finds_the_shortest_way_again_whatever_changed(seed, changes):
         if goal not in lengths:
             with pytest.raises(NoPath):
                 grid.search(start, goal, "auto")
-            assert not grid.reached(goal)
             continue
         found = grid.search(start, goal, "auto", explored=True)
         assert found.cost == pytest.approx(lengths[goal], rel=1e-6)
@@ -262,6 +261,16 @@ def test_auto_finds_the_shortest_way_again_whatever_changed(seed, changes):
         assert len(found.explored) == found.expanded
         with pytest.raises(NoPath, match="flood"):
             grid.way_to(start)
+
+
+def test_auto_does_not_search_again_from_the_start_where_the_goal_is_closed_in():
+    occupied = np.random.default_rng(0).random((100, 100)) < 0.3
+    occupied[48:53, 48:53] = True
+    occupied[50, 50] = occupied[0, 0] = False
+    grid = SearchGrid(occupied)
+    with pytest.raises(NoPath, match="1 cells were expanded"):
+        grid.search((0, 0), (50, 50), "auto")
+    assert grid.expanded_cells().tolist() == [[50, 50]]
 
 
 def test_what_closes_near_the_start_costs_little_to_go_round():
@@ -282,6 +291,8 @@ def test_what_closes_near_the_start_costs_little_to_go_round():
 def test_a_flood_reaches_what_dijkstra_reaches():
     occupied, start, _ = random_world(11, size=30)
     grid = SearchGrid(occupied)
+    with pytest.raises(NoPath):
+        grid.way_to(start)
     lengths = grid.flood(start)
     expected = shortest(occupied, start)
     assert np.isfinite(lengths).sum() == len(expected)

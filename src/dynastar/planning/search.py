@@ -21,9 +21,10 @@ JUMP_BELOW = 0.3  # turns round corners for a free cell, up to which jumping is 
 
 
 class SearchResult(NamedTuple):
-    """A way: ``cells`` (n, 2) of (row, column), its ``cost`` in cells, what was expanded for it.
+    """A way: ``cells`` (n, 2) of (row, column), its ``cost`` and the number of ``expanded`` cells.
 
-    ``explored`` (m, 2) are the expanded cells, row by row, or None if nobody asked.
+    The cost is its length in cells. ``explored`` (m, 2) lists the expanded cells, row by row, or is
+    None if it was not asked for.
     """
 
     cells: Cells
@@ -35,11 +36,11 @@ class SearchResult(NamedTuple):
 class SearchGrid:
     """A grid prepared once and searched many times; nothing is cleared between searches.
 
-    ``occupied`` is [rows, columns], true where nothing can be. A diagonal step needs both cells
-    beside it free. P of Eq. 2 counts the cells of ``counted`` (uint8, 1 where something is, see
-    ``recount``), else those of ``occupied``. A cell of the map, in
-    which k and "around n" are measured, is ``cell`` cells of the grid wide. Raises MapError for an
-    array that is not two-dimensional, empty or too large.
+    ``occupied`` is [rows, columns], true where a cell is blocked. A diagonal step needs both cells
+    beside it free. P of Eq. 2 counts the cells of ``counted`` (uint8, 1 where a cell is blocked, see
+    ``recount``), else those of ``occupied``. k and "around n" are measured in cells of the map, each
+    ``cell`` cells of the grid wide. Raises MapError for an array that is not two-dimensional, empty
+    or too large.
     """
 
     def __init__(
@@ -175,21 +176,20 @@ class SearchGrid:
         if not self.is_free(goal):
             raise GoalOccupied(f"the goal, cell {goal}, is occupied: expected a free cell")
         terms = heuristic or HeuristicConfig()
+        from_goal = False
         if algorithm == "auto":
             algorithm = "jump" if self._prefers_jumps() else "astar"
-            if algorithm == "astar" and terms.estimate == "octile":
-                result = self._again(start, goal)
-                # If there is none, ``reached`` has to tell what can be reached from the start.
-                if result is not None:
-                    return result._replace(explored=self.expanded_cells() if explored else None)
-        found, expanded = self._run(start, goal, algorithm, terms)
-        if not found:
+            from_goal = algorithm == "astar" and terms.estimate == "octile"
+        if from_goal:
+            way, expanded = self._search_from_goal(start, goal)
+        else:
+            found, expanded = self._run(start, goal, algorithm, terms)
+            way = self._trace(goal) if found else None
+        if way is None:
             raise NoPath(
-                f"no way leads from cell {start} to cell {goal}: "
-                f"it is not among the {expanded} cells that were expanded"
+                f"no way leads from cell {start} to cell {goal}: {expanded} cells were expanded"
             )
-        cells, cost = self._trace(goal)
-        return SearchResult(cells, cost, expanded, self.expanded_cells() if explored else None)
+        return SearchResult(*way, expanded, self.expanded_cells() if explored else None)
 
     def flood(self, start_rc: Cell) -> npt.NDArray[np.float64]:
         """Lengths in cells, [rows, columns], of the shortest ways from a cell; inf if none."""
@@ -199,18 +199,11 @@ class SearchGrid:
         lengths[~self._closed()] = np.inf
         return lengths.reshape(self._near.shape)[1:-1, 1:-1]
 
-    def reached(self, cell: Cell) -> bool:
-        """Whether the last search or flood expanded a cell."""
-        node = self._node(self._inside(cell, "cell"))
-        known, stamp = self._last
-        return (
-            known.size > 0
-            and (int(known[node]) & (labels.STAMP_BITS | 1)) == stamp << labels.STAMP_SHIFT | 1
-        )
-
     def way_to(self, cell: Cell) -> Cells:
         """The way (n, 2) to a cell that the last flood expanded; NoPath for any other."""
-        if self._last[0] is not self._labels or not self.reached(cell):
+        node = self._node(self._inside(cell, "cell"))
+        flooded = self._stamp > 0 and self._last[0] is self._labels
+        if not flooded or not self._closed()[node]:
             raise NoPath(f"cell {cell} was not reached by the last flood: expected one that was")
         return self._trace(cell)[0]
 
@@ -249,13 +242,16 @@ class SearchGrid:
         )
         return found, expanded
 
-    def _again(self, start: Cell, goal: Cell) -> SearchResult | None:
-        """The shortest way by what is known of ways to the goal, or None if there is none."""
+    def _search_from_goal(self, start: Cell, goal: Cell) -> tuple[tuple[Cells, float] | None, int]:
+        """The shortest way and its length, or None, and how many cells were expanded.
+
+        It uses and keeps what is known of the ways to the goal.
+        """
         if self._tree is None:
             self._tree = GoalTree(self._near)
         found, expanded = self._tree.search(self._node(start), self._node(goal))
         self._last = self._tree.searched, self._tree.stamp
-        return SearchResult(*self._tree.trace(), expanded, None) if found else None
+        return self._tree.trace() if found else None, expanded
 
     def _prefers_jumps(self) -> bool:
         """Whether the map has so few corners that jumping from one to the next is worth it."""
