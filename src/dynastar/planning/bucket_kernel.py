@@ -2,9 +2,10 @@
 
 The estimate is consistent, so f never falls, and no step raises it by more than two diagonals: the
 open list is a ring of buckets, one for each f that can be open. A bucket is a chain through
-``pool`` of entries ``next entry << 32 | node``, the newest first. A bit for each bucket tells whether
-it holds any, and a bit for each word of those whether it has one set, so the next bucket is found
-in a few steps. Of the steps only the canonical ones are tried, so most nodes enter once.
+``pool`` of entries ``next entry << 32 | node``, the newest first; ``heads`` has the first, or -1.
+``words`` has a bit for each bucket, set if it holds an entry, and ``filled`` a bit for each word,
+set if the word is not 0, so the next bucket is found in a few steps. Only canonical steps are
+tried, so most nodes enter once.
 """
 
 import numpy as np
@@ -24,55 +25,89 @@ from dynastar.planning.labels import (
 )  # fmt: skip
 from dynastar.planning.neighbours import CANONICAL, COLUMN_STEP, NO_DIRECTION, ROW_STEP, Bytes
 
+Heads = npt.NDArray[np.int32]
+Words = npt.NDArray[np.uint64]
+Word = np.uint64
+
 BUCKETS = 4096  # 64 words of 64 bits; more than two diagonals
 LAST = BUCKETS - 1
 ALL, ONE = np.uint64(0xFFFFFFFFFFFFFFFF), np.uint64(1)
 LOW_HALF = 0xFFFFFFFF
 
 
+@njit(cache=True, inline="always")
+def vacant(pool: Ints, unused: int, used: int) -> tuple[int, int, int]:
+    """An entry to write to, and ``unused`` and ``used`` without that entry.
+
+    ``unused`` is the first of a chain of entries that were taken out, or -1. The entries of
+    ``pool`` from ``used`` on have never been written to.
+    """
+    if unused >= 0:
+        return unused, pool[unused], used
+    return used, unused, used + 1
+
+
+@njit(cache=True, inline="always")
+def put(
+    heads: Heads, words: Words, pool: Ints, filled: Word, entry: int, f: int, node: int
+) -> Word:
+    """Write a node to an entry and put it first in the bucket of ``f``. Returns ``filled``."""
+    bucket = f & LAST
+    pool[entry] = np.int64(heads[bucket]) << 32 | node
+    heads[bucket] = entry
+    words[bucket >> 6] |= ONE << np.uint64(bucket & 63)
+    return filled | ONE << np.uint64(bucket >> 6)
+
+
+@njit(cache=True, inline="always")
+def take(
+    heads: Heads, words: Words, pool: Ints, filled: Word, bucket: int
+) -> tuple[np.int64, int, Word]:
+    """Take the first entry out of a bucket. Returns the entry, its node and ``filled``."""
+    entry = np.int64(heads[bucket])
+    node, following = pool[entry] & LOW_HALF, pool[entry] >> 32
+    heads[bucket] = following
+    word = words[bucket >> 6] ^ np.uint64(following < 0) << np.uint64(bucket & 63)
+    words[bucket >> 6] = word
+    return entry, node, filled ^ np.uint64(word == 0) << np.uint64(bucket >> 6)
+
+
+@njit(cache=True, inline="always")
+def next_word(filled: Word, i: int) -> int:
+    """Index of the first word after ``i`` that has a bit set, or of the first of all."""
+    later = filled & ((ALL << np.uint64(i)) << ONE)
+    return trailing_zeros(later if later != 0 else filled)
+
+
 @njit(cache=True)
 def shortest(
     near: Bytes, width: int, labels: Ints, stamp: int, start: int, goal: int,
-    informed: bool, heads: npt.NDArray[np.int32], pool: Ints,
+    informed: bool, heads: Heads, pool: Ints,
 ) -> tuple[bool, int, Ints]:  # fmt: skip
-    """Expands from ``start`` until ``goal`` (-1: everything) is closed; the ways stay in ``labels``.
+    """Expand from ``start`` until ``goal`` (-1: all nodes) is closed. Writes ``labels``.
 
-    Without being ``informed`` it searches all round (Dijkstra). ``heads``
-    and ``pool`` are room to work in. Returns whether the goal was found, how many nodes were
-    expanded, and ``pool``, which may have grown.
+    If not ``informed`` it searches all round (Dijkstra). ``heads`` and ``pool`` are work arrays.
+    Returns whether the goal was found, how many nodes were expanded, and ``pool``, which may have
+    grown.
     """
     steps = ROW_STEP * width + COLUMN_STEP
     tag = stamp << STAMP_SHIFT
     goal_y, goal_x = goal // width, goal % width
-    words = np.zeros(64, np.uint64)
-    filled = np.uint64(0)  # a bit for each word
     heads[:] = -1
+    words = np.zeros(64, np.uint64)
     labels[start] = tag | NO_DIRECTION << DIRECTION_SHIFT
     f = octile(start // width - goal_y, start % width - goal_x) if informed else 0
-    at = f & LAST
-    pool[0] = -1 << 32 | start
-    heads[at] = 0
-    words[at >> 6] |= ONE << np.uint64(at & 63)
-    filled |= ONE << np.uint64(at >> 6)
-    unused, used, left, expanded = np.int64(-1), np.int64(1), 1, 0
+    filled = put(heads, words, pool, np.uint64(0), 0, f, start)
+    at, unused, used, left, expanded = f & LAST, np.int64(-1), np.int64(1), 1, 0
     per_width = 1.0 / width
     while left > 0:
-        entry = np.int64(heads[at])
-        if entry < 0:
-            i = at >> 6
-            word = words[i] & (ALL << np.uint64(at & 63))
+        if heads[at] < 0:
+            i, word = at >> 6, words[at >> 6] & (ALL << np.uint64(at & 63))
             if word == 0:
-                later = filled & ((ALL << np.uint64(i)) << ONE)
-                i = trailing_zeros(later if later != 0 else filled)
+                i = next_word(filled, i)
                 word = words[i]
             at = (i << 6) + trailing_zeros(word)
-            entry = np.int64(heads[at])
-        node, following = pool[entry] & LOW_HALF, pool[entry] >> 32
-        heads[at] = following
-        if following < 0:
-            words[at >> 6] ^= ONE << np.uint64(at & 63)
-            if words[at >> 6] == 0:
-                filled ^= ONE << np.uint64(at >> 6)
+        entry, node, filled = take(heads, words, pool, filled, at)
         pool[entry], unused = unused, entry
         left -= 1
         label = labels[node]
@@ -100,14 +135,7 @@ def shortest(
             f = g_new
             if informed:
                 f += octile(y + ROW_STEP[d] - goal_y, x + COLUMN_STEP[d] - goal_x)
-            bucket = f & LAST
-            if unused >= 0:
-                entry, unused = unused, pool[unused]
-            else:
-                entry, used = used, used + 1
-            pool[entry] = np.int64(heads[bucket]) << 32 | neighbour
-            heads[bucket] = entry
-            words[bucket >> 6] |= ONE << np.uint64(bucket & 63)
-            filled |= ONE << np.uint64(bucket >> 6)
+            entry, unused, used = vacant(pool, unused, used)
+            filled = put(heads, words, pool, filled, entry, f, neighbour)
             left += 1
     return False, expanded, pool

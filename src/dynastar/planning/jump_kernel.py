@@ -1,4 +1,4 @@
-"""Jump-point search: A* that jumps along straight ways to where a shortest way may have to turn.
+"""Jump-point search: A* that jumps along straight lines to where a shortest way may turn.
 
 [Harabor and Grastien, 2011 and 2014], without corner cutting and without tables to prepare: the
 blocked cells of every row and of every column are kept as bits, so that a jump looks at 64 cells at
@@ -40,10 +40,10 @@ TOP = np.uint64(63)
 def pack(
     near: Bytes, lines: Words, top: int, left: int, bottom: int, right: int, upright: bool = False
 ) -> None:
-    """Sets the bits of ``lines`` [y, words] where cells of ``near`` [y, x] are blocked, in a window.
+    """Set the bits of ``lines`` [y, words] in a window where cells of ``near`` [y, x] are blocked.
 
-    Lines that are ``upright`` are columns, and so ``near`` is [x, y]. Beyond the last column
-    everything is blocked. The window ends before ``bottom``, ``right``.
+    If ``upright``, the lines are columns, and ``near`` is [x, y]. Beyond the last column everything
+    is blocked. The window ends before ``bottom``, ``right``.
     """
     first, last = left >> 6, ((right - 1) >> 6) + 1
     if upright:
@@ -60,9 +60,9 @@ def pack(
 
 @njit(cache=True, inline="always")
 def jump_up(lines: Words, line: int, at: int, goal: int) -> int:
-    """From ``at`` towards larger numbers: where to stop on a line, or -1 if it leads nowhere.
+    """Where a jump from ``at`` towards larger numbers stops on a line, or -1 at a wall.
 
-    It stops at ``goal`` (-1: not on this line), and where a cell beside the line is free after a
+    The jump stops at ``goal`` (-1: not on this line), and where a cell beside the line is free after a
     blocked one.
     """
     i = at >> 6
@@ -115,7 +115,7 @@ def jump_down(lines: Words, line: int, at: int, goal: int) -> int:
 def straight_jump(
     rows: Words, columns: Words, y: int, x: int, d: int, goal_y: int, goal_x: int
 ) -> int:
-    """Cells to the end of the jump from (y, x) in a straight direction, 0 if it leads nowhere."""
+    """Number of cells of the jump from (y, x) in a straight direction, 0 if it ends at a wall."""
     if d == 2:
         end = jump_up(rows, y, x, goal_x if y == goal_y else -1)
         return end - x if end >= 0 else 0
@@ -129,12 +129,20 @@ def straight_jump(
     return y - end if end >= 0 else 0
 
 
+@njit(cache=True, inline="always")
+def shorter(label: int, tag: int, g: int, d: int) -> int:
+    """Label of a node also reached in direction ``d`` over a length ``g``: the shorter counts."""
+    if (label & STAMP_BITS) != tag or (label >> G_SHIFT) > g:
+        return g << G_SHIFT | tag | d << DIRECTION_SHIFT
+    return label
+
+
 @njit(cache=True)
 def enter(
     labels: Ints, tag: int, node: int, g: int, d: int, h: int,
     heap: Ints, nodes: npt.NDArray[np.int32], size: int, serial: int,
 ) -> tuple[int, int]:  # fmt: skip
-    """Labels a node and enters it into the open list, if the way is shorter than what is known."""
+    """Label a node and put it into the open list, if the way is shorter than what is known."""
     there = labels[node]
     if (there & STAMP_BITS) == tag and ((there & 1) or (there >> G_SHIFT) <= g):
         return size, serial
@@ -149,12 +157,11 @@ def jump_search(
     near: Bytes, rows: Words, columns: Words, width: int, labels: Ints, stamp: int,
     start: int, goal: int, heap: Ints, nodes: npt.NDArray[np.int32],
 ) -> tuple[bool, int, Ints, npt.NDArray[np.int32]]:  # fmt: skip
-    """Expands jump points from ``start`` until ``goal`` is closed; the ways stay in ``labels``.
+    """Expand jump points from ``start`` until ``goal`` is closed. Writes ``labels``.
 
-    On a diagonal there is nothing to turn round, so it is followed to its end and the jumps to
-    either side of it are entered; the cell that one leaves it at is labelled, but not entered.
-    Returns whether the goal was found, how many nodes were expanded, and the two work arrays (see
-    heap_kernel), which may have grown.
+    No way turns round a corner on a diagonal: it is followed to its end, and the jumps to either
+    side of it are entered. The cell where such a jump begins is labelled, but not entered. Returns
+    what ``heap_kernel.search`` does.
     """
     steps = ROW_STEP * width + COLUMN_STEP
     tag = stamp << STAMP_SHIFT
@@ -182,8 +189,7 @@ def jump_search(
         while untried != 0:
             d = trailing_zeros(untried)
             untried &= untried - ONE
-            diagonal = d & 1 == 1
-            one_side, other_side = ((d + 1) & 7, (d - 1) & 7) if diagonal else (d, d)
+            diagonal = d & 1
             at, at_y, at_x, at_g = node, y, x, g
             while not diagonal or (LEGAL[near[at]] >> d) & 1:
                 if diagonal:
@@ -192,26 +198,17 @@ def jump_search(
                     if at == goal:
                         size, serial = enter(labels, tag, at, at_g, d, 0, heap, nodes, size, serial)
                         break
-                side = one_side
-                while True:
+                for turn in range(diagonal + 1):  # the two sides of a diagonal, or straight on
+                    side = (d + diagonal - 2 * turn) & 7
                     cells = straight_jump(rows, columns, at_y, at_x, side, goal_y, goal_x)
                     if cells > 0:
-                        there = labels[at]
-                        if at != node and (
-                            (there & STAMP_BITS) != tag or (there >> G_SHIFT) > at_g
-                        ):
-                            labels[at] = at_g << G_SHIFT | tag | d << DIRECTION_SHIFT
-                        h = octile(
-                            at_y + cells * ROW_STEP[side] - goal_y,
-                            at_x + cells * COLUMN_STEP[side] - goal_x,
-                        )
+                        labels[at] = shorter(labels[at], tag, at_g, d)
+                        end_y = at_y + cells * ROW_STEP[side]
+                        end_x = at_x + cells * COLUMN_STEP[side]
                         size, serial = enter(
-                            labels, tag, at + cells * steps[side], at_g + cells * STRAIGHT,
-                            side, h, heap, nodes, size, serial,
+                            labels, tag, at + cells * steps[side], at_g + cells * STRAIGHT, side,
+                            octile(end_y - goal_y, end_x - goal_x), heap, nodes, size, serial,
                         )  # fmt: skip
-                    if side == other_side:
-                        break
-                    side = other_side
                 if not diagonal:
                     break
     return False, expanded, heap, nodes
