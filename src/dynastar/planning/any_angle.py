@@ -1,7 +1,8 @@
-"""Shortest ways by straight lines at any angle between cells' centres, near a way or over the whole map.
+"""Shortest ways along straight lines at any angle between cells' centres.
 
-Every centre that can be seen from every other: A* over that graph, whose edges are looked at only where
-they would make a way shorter, and short enough to lead to one that is shorter than what is known.
+The graph has an edge between any two centres with a clear line between them, near a way or on the
+whole map. A* tests an edge only where it would make a way shorter, and short enough to lead to one
+that is shorter than the known way.
 """
 
 import math
@@ -20,10 +21,10 @@ CORRIDOR = 3  # cells to either side of a way
 def fitting_centres(
     blocked: Bytes, points: Points, radius: float, reach: int
 ) -> npt.NDArray[np.float64]:
-    """The centres (n, 2) where a disc fits, up to ``reach`` cells in rows and columns from a polyline.
+    """The centres (n, 2) within ``reach`` rows and columns of a polyline where a disc fits.
 
-    The polyline has to have a point in every cell that it goes on from, or nearly so. The centres
-    come after the polyline's ends: the first two of the result.
+    The polyline needs a point in every cell that it passes, or nearly so. Its two ends come first
+    in the result, before the centres.
     """
     rows, columns = blocked.shape
     taken = np.zeros((rows, columns), np.bool_)
@@ -47,7 +48,7 @@ def fitting_centres(
 def shortest_lines(blocked: Bytes, centres: Points, radius: float, bound: float) -> Points:
     """The shortest polyline (k, 2) from the first to the second of ``centres`` over the others.
 
-    A disc of that ``radius`` can follow each of its segments. Empty if there is none of at most
+    A disc of ``radius`` can follow each of its segments. Empty if there is none of at most
     ``bound`` cells.
     """
     n = len(centres)
@@ -102,7 +103,7 @@ def shortest_lines(blocked: Bytes, centres: Points, radius: float, bound: float)
 def straighten_kernel(
     blocked: Bytes, points: Points, radius: float, reach: int, known: Points
 ) -> Points:
-    """``straighten`` on arrays of one type; ``known`` is a polyline to be shorter than."""
+    """``straighten`` on arrays of one type; ``known`` is returned if no shorter line is found."""
     centres = fitting_centres(blocked, points, radius, reach)
     line = shortest_lines(blocked, centres, radius, polyline_length(known) + 1e-9)
     return line if len(line) > 0 else known
@@ -117,9 +118,9 @@ def straighten(
 ) -> Points:
     """The shortest polyline over cells' centres near a way that a disc can follow, at any angle.
 
-    ``blocked`` is [rows, columns]; ``points`` (n, 2), (row, column) in fractions of cells, are the way,
-    cell by cell; ``radius``, the disc's, and ``reach``, how far from the way the centres may lie, are in
-    cells. ``known`` is a shorter way between the same ends, if there is one: a good one saves time. The
+    ``blocked`` is [rows, columns]; ``points`` (n, 2), (row, column) in fractions of cells, are the
+    way, cell by cell; ``radius`` of the disc and ``reach`` of the centres from the way are in cells.
+    ``known`` is a shorter way between the same ends, if there is one: a good one saves time. The
     result is never longer than either; see ``segment_clear`` for what counts as clear.
     """
     line = np.array(points, dtype=np.float64).reshape(-1, 2)

@@ -1,4 +1,4 @@
-"""Why there is no plan, and what would help: looked for at leisure, in the map as it is given."""
+"""Why there is no plan, and what would help, found by a slow look at the map."""
 
 import math
 
@@ -28,9 +28,9 @@ def explained(
 ) -> PlanningError:
     """An error of the same kind that says what would help, or the same if nothing more is found.
 
-    For a point where the disc does not fit: what is there, and the nearest place where it fits. For
-    two points that nothing connects: the widest disc that would pass, and the narrowest place.
-    ``radius`` (m) is that of the disc, unless the error has one.
+    For a point where the disc does not fit it names what blocks it and the nearest place where it
+    fits; for two points that no path connects the widest disc that would pass and the narrowest
+    place. ``radius`` (m) is that of the disc, unless the error has one.
     """
     words = None
     radius = radius if error.radius is None else error.radius
@@ -46,7 +46,7 @@ def explained(
 def misfit(
     grid: OccupancyGrid, what: str, xy: Point, radius: float, unknown: Unknown
 ) -> str | None:
-    """Why a disc does not fit at a point, and where the nearest place is; None if it fits.
+    """Why a disc does not fit at a point, and the nearest place where it fits; None if it fits.
 
     Raises OutOfMap for a point off the map.
     """
@@ -76,7 +76,7 @@ def misfit(
 def parted(
     grid: OccupancyGrid, start: Point, goal: Point, radius: float, unknown: Unknown
 ) -> str | None:
-    """Why nothing connects two points of the map, in words; None if something does."""
+    """Message for two points of the map that no path connects; None if a path does."""
     ends = grid.world_to_cell(start[0], start[1]), grid.world_to_cell(goal[0], goal[1])
     field = distance_to_squares(grid.blocked(unknown))
     width, where = _widest(field, ends)
@@ -115,7 +115,7 @@ def _kind(grid: OccupancyGrid, cell: tuple[int, int]) -> str:
 def _nearest_blocked(
     grid: OccupancyGrid, blocked: npt.NDArray[np.bool_], xy: Point
 ) -> tuple[float, tuple[int, int] | None]:
-    """Metres from a point to the nearest blocked square or the map's edge, and the square's cell."""
+    """Metres from a point to the nearest blocked cell's square, and the cell; None for the edge."""
     row, column = grid.frame.to_grid(*xy)
     rows, columns = np.nonzero(blocked)
     edge = min(row, column, grid.rows - row, grid.columns - column)
@@ -144,9 +144,10 @@ def _nearest_fit(grid: OccupancyGrid, field: Floats, xy: Point, radius: float) -
 def _widest(
     field: Floats, ends: tuple[tuple[int, int], tuple[int, int]]
 ) -> tuple[float, tuple[int, int]]:
-    """Radius, in cells, of the widest disc that could go between two cells, and where it is narrowest.
+    """Radius, in cells, of the widest disc that can pass between two cells, and the narrowest cell.
 
-    0 if none can. ``field`` has the cells from every cell's centre to the nearest blocked square.
+    The radius is 0 if no disc can. ``field`` is the distance, in cells, from every cell's centre to
+    the nearest blocked square.
     """
     low, high = 0.0, float(min(field[ends[0]], field[ends[1]]))
     if not _connected(field > 0.0, ends):

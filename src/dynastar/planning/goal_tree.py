@@ -1,4 +1,4 @@
-"""Shortest ways to a goal that stays the same, while cells close and the robot moves."""
+"""Shortest ways to a fixed goal, while cells close and the robot moves."""
 
 import math
 from typing import NamedTuple
@@ -13,7 +13,7 @@ Cells = npt.NDArray[np.int32]
 
 
 class _Tree(NamedTuple):
-    """A search from the goal: its stamp, the nodes it led between, how many it expanded."""
+    """A search from the goal: its stamp, its end nodes and the number of expanded nodes."""
 
     stamp: int
     goal: int
@@ -22,7 +22,7 @@ class _Tree(NamedTuple):
 
 
 class _Way(NamedTuple):
-    """Where a way runs: its last node before the tree's (-1: none), the tree's, and the tree's stamp."""
+    """A way: its last node before the tree (-1: none), where it joins the tree, the tree's stamp."""
 
     last: int
     meeting: int
@@ -30,7 +30,7 @@ class _Way(NamedTuple):
 
 
 class GoalTree:
-    """The last search from a goal, and what of it still stands.
+    """The last search from a goal, and which of its ways are still valid.
 
     ``near`` [rows, columns] is that of a padded grid, which may change; nodes are indices into it.
     """
@@ -38,7 +38,7 @@ class GoalTree:
     def __init__(self, near: Bytes) -> None:
         self.near = near
         self.labels = np.zeros(near.size, np.int64)
-        self.again = np.zeros(0, np.int64)  # made when it is wanted, and costs the pages written to
+        self.again = np.zeros(0, np.int64)  # made when it is first needed
         self.stamp = 0
         self._tree: _Tree | None = None
         self._way = _Way(-1, 0, 0)
@@ -47,11 +47,11 @@ class GoalTree:
         self._nodes = np.empty(1024, np.int32)
 
     def forget(self) -> None:
-        """Makes the next search one from nothing."""
+        """Make the next search start from nothing."""
         self._tree = None
 
     def changed(self, top: int, left: int, bottom: int, right: int, opened: bool) -> None:
-        """Takes notice that ``near`` is another in a window, and whether cells have opened there."""
+        """Update the tree after ``near`` changed in a window; ``opened``: cells became free there."""
         if opened:
             self._tree = None  # there may be shorter ways
         if self._tree is not None:
@@ -61,7 +61,7 @@ class GoalTree:
             )  # fmt: skip
 
     def search(self, start: int, goal: int) -> tuple[bool, int]:
-        """Whether there is a way between two nodes, and how many were expanded to find it."""
+        """Whether there is a way between two nodes, and how many nodes were expanded."""
         if self.stamp == labels.MAX_STAMP:
             self.labels[:] = self.again[:] = self.stamp = 0
             self._tree = None
@@ -74,7 +74,7 @@ class GoalTree:
             self._tree = _Tree(self.stamp, goal, start, expanded) if found else None
             self._way = _Way(-1, start, self.stamp)
             return found, expanded
-        if tree_kernel.stands(self.labels[start], tree.stamp):
+        if tree_kernel.is_valid(self.labels[start], tree.stamp):
             self._way = _Way(-1, start, tree.stamp)
             return True, 0
         if not self.again.size:

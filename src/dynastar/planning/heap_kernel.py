@@ -1,7 +1,7 @@
-"""The search of Eq. 3, whatever its terms, on an open list that is a binary heap.
+"""The search of Eq. 3, with any of its terms, on a binary heap.
 
 An entry of the heap is f (34 bits) | 2^29 - serial number (29): of equal f the newest comes first.
-A node whose way got shorter is entered again; its old entries find it closed.
+A node whose way got shorter is entered again; its older entries are skipped, as it is closed then.
 """
 
 import math
@@ -33,7 +33,7 @@ EXP = np.exp(np.arange(EXP_STEPS + 1) / EXP_STEPS)
 
 
 class Terms(NamedTuple):
-    """Eq. 3 in the kernel's units; ``adaptive`` is false if h(n) and the weight are all there is.
+    """Terms of Eq. 3 in the kernel's units; not ``adaptive``: only h(n) and the weight count.
 
     ``around`` > 0 takes P from the square of that half width round n, else from the rectangle
     n - goal. ``k`` is negative if beta is the interior angle at n.
@@ -51,7 +51,7 @@ class Terms(NamedTuple):
 
 @njit(cache=True, inline="always")
 def estimate(rows: int, columns: int, euclidean: bool) -> int:
-    """h: the way over a free 8-connected grid, or the straight line."""
+    """h: length of the way over a free 8-connected grid, or of the straight line."""
     if euclidean:
         return int(STRAIGHT * math.sqrt(rows * rows + columns * columns))
     return octile(rows, columns)
@@ -59,7 +59,7 @@ def estimate(rows: int, columns: int, euclidean: bool) -> int:
 
 @njit(cache=True)
 def sum_up(occupied: Bytes, sums: npt.NDArray[np.int32]) -> None:
-    """Fills the summed-area table [rows + 1, columns + 1] of a mask [rows, columns], 0 or 1."""
+    """Fill the summed-area table [rows + 1, columns + 1] of a mask [rows, columns], 0 or 1."""
     sums[0] = 0
     for y in range(1, sums.shape[0]):
         along = 0
@@ -79,7 +79,7 @@ def occupied_in(sums: Ints, y: int, x: int, other_y: int, other_x: int) -> int:
 
 @njit(cache=True, inline="always")
 def exponential(ratio: float) -> float:
-    """e^ratio for a ratio from 0 to 1, to the last digit but one: a table and four terms."""
+    """e^ratio for a ratio from 0 to 1, by a table and four terms; the last digit may be off."""
     i = int(ratio * EXP_STEPS)
     rest = ratio - i / EXP_STEPS
     series = 1.0 + rest * (1.0 + rest * (0.5 + rest * (1.0 / 6.0 + rest * (1.0 / 24.0))))
@@ -91,7 +91,7 @@ def h_adaptive(
     terms: Terms, sums: Ints, n: tuple[int, int], h_parent: float,
     start: tuple[int, int], goal: tuple[int, int],
 ) -> float:  # fmt: skip
-    """h_A(n) of Eq. 2, not below 0; cells are (y, x) in padded coordinates, ``h_parent`` is h(p)."""
+    """h_A(n) of Eq. 2, at least 0; cells are (y, x), padded, and ``h_parent`` is h(p)."""
     y, x = n
     to_goal_y, to_goal_x = goal[0] - y, goal[1] - x
     value = float(estimate(to_goal_y, to_goal_x, terms.euclidean)) + h_parent
@@ -119,7 +119,7 @@ def h_adaptive(
 
 @njit(cache=True, inline="always")
 def push(heap: Ints, size: int, key: int) -> None:
-    """Adds ``key`` to a binary heap of ``size`` keys."""
+    """Add ``key`` to a binary heap of ``size`` keys."""
     i = size
     while i > 0:
         above = (i - 1) >> 1
@@ -132,7 +132,7 @@ def push(heap: Ints, size: int, key: int) -> None:
 
 @njit(cache=True, inline="always")
 def pop(heap: Ints, size: int) -> int:
-    """Takes the smallest key from a binary heap of ``size`` keys."""
+    """Take the smallest key from a binary heap of ``size`` keys."""
     smallest, last = heap[0], heap[size - 1]
     hole, below = 0, 1
     while below < size - 1:
@@ -148,7 +148,7 @@ def search(
     near: Bytes, sums: Ints, width: int, labels: Ints, stamp: int,
     start: int, goal: int, terms: Terms, heap: Ints, nodes: npt.NDArray[np.int32],
 ) -> tuple[bool, int, Ints, npt.NDArray[np.int32]]:  # fmt: skip
-    """Expands from ``start`` until ``goal`` (-1: everything) is closed; the ways stay in ``labels``.
+    """Expand from ``start`` until ``goal`` (-1: all nodes) is closed. Writes ``labels``.
 
     Returns whether the goal was found, how many nodes were expanded, and the two work arrays
     ``heap`` and ``nodes`` (nodes[serial number] is the node of an entry), which may have grown.

@@ -1,4 +1,4 @@
-"""The improved heuristic (section III.A, Eqs. 2-3) and what each planner leaves of it."""
+"""The improved heuristic (section III.A, Eqs. 2-3) and the terms of it that a planner uses."""
 
 import math
 from collections.abc import Callable
@@ -54,9 +54,9 @@ def kernel_terms(
     occupied: int,
     cell: int = 1,
 ) -> Terms:
-    """The numbers that the search kernel wants; ``occupied`` is how many cells of the map are.
+    """Terms for the search kernel; ``occupied`` is the number of occupied cells.
 
-    Cells are those of the grid that is searched, a cell of the map is ``cell`` of them wide.
+    Cells are those of the grid that is searched; a cell of the map is ``cell`` of them wide.
     """
     rows, columns = abs(start[0] - goal[0]) + 1, abs(start[1] - goal[1]) + 1
     line = cell * max(rows, columns)

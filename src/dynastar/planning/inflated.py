@@ -14,9 +14,9 @@ Point = tuple[float, float]
 
 
 class InflatedGrid:
-    """The blocked cells [rows, columns] of a map, and the grid to search, inflated by ``radius`` cells.
+    """The blocked cells [rows, columns] of a map and their inflation by ``radius`` cells.
 
-    P of Eq. 2 counts the blocked cells; a cell of the map is ``cell`` cells wide.
+    P of Eq. 2 counts the blocked cells; a cell of the map is ``cell`` of these cells wide.
     """
 
     def __init__(self, blocked: Mask, radius: float, cell: int) -> None:
@@ -34,7 +34,7 @@ class InflatedGrid:
 
     @property
     def search(self) -> SearchGrid:
-        """The inflated grid."""
+        """The inflated grid, up to date with all marks."""
         self._inflate_stale()
         return self._search
 

@@ -1,10 +1,10 @@
-"""What a search knows of a node, in one int64, and how a way is read from it.
+"""What a search knows about a node, in one int64, and how a way is read from it.
 
     g (38 bits) | stamp of the search (20) | direction it was reached in (4) | closed (1)
 
-A label with another stamp is worth nothing, so no search has to clear the last one's. Lengths are
-whole numbers with 1393 / 985 for sqrt(2), 2.6e-7 off, so that equal ways tie exactly; a cost that
-is told to anybody is counted anew from the steps.
+A label with another stamp is ignored, so no search has to clear the labels of the last. Lengths
+are whole numbers with 1393 / 985 for sqrt(2), 2.6e-7 off, so that equal ways tie exactly. A cost
+that is returned is computed again from the steps.
 """
 
 import math
@@ -34,7 +34,7 @@ def octile(rows: int, columns: int) -> int:
 
 @njit(cache=True)
 def with_room(array: Ints, needed: int) -> Ints:
-    """The array, or if it has not the ``needed`` room the same with half as much again or more."""
+    """Return ``array``, grown by 50 % (or to ``needed``) if its size is less than ``needed``."""
     if needed <= array.size:
         return array
     larger = np.empty(max(needed, array.size + array.size // 2), array.dtype)
@@ -46,8 +46,8 @@ def with_room(array: Ints, needed: int) -> Ints:
 def trace(labels: Ints, stamp: int, width: int, goal: int) -> tuple[npt.NDArray[np.int32], float]:
     """The way (n, 2) that a search found to ``goal``, in unpadded (row, column), and its length.
 
-    A node may have been reached by a jump over many; the way runs back from it to the first labelled
-    node that is nearer to the start by exactly the distance.
+    A node may have been reached by a jump over several others. The way runs back from it to the
+    first labelled node whose length from the start is shorter by exactly the distance between them.
     """
     steps = ROW_STEP * width + COLUMN_STEP
     tag = stamp << STAMP_SHIFT

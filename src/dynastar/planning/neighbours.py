@@ -1,9 +1,9 @@
-"""What is free round each cell of a grid, and which steps of that a search has to try.
+"""The free neighbours of each cell of a grid, and the steps from it that a search has to try.
 
 The grid is padded by one blocked cell all round and flattened; a node is an index into it. A cell's
 byte ``near`` has bit d set where its neighbour in direction d is free. 0 means that the cell itself
-is blocked; a free cell with nothing free round it has the bit of a diagonal, which is no step, for
-a diagonal step needs both cells beside it free (no corner is cut).
+is blocked. A free cell without a free neighbour has the bit of a diagonal, which is not a legal
+step: a diagonal step needs both cells beside it free (no corner is cut).
 """
 
 import cv2
@@ -31,11 +31,12 @@ def legal_steps(near: int) -> int:
 
 
 def canonical_steps(reached: int, near: int) -> int:
-    """Of the legal steps, those that some shortest way takes from a cell reached in a direction.
+    """Bits of the legal steps that a shortest way may take from a cell reached in a direction.
 
-    Among ways of the same length the one counts that goes diagonally first. So a diagonal goes on
-    or turns to either of its straight directions; a straight step goes on, and turns only round a
-    corner that it has just passed (Harabor and Grastien's jump points, no corner cutting).
+    Of several ways of the same length only the one that goes diagonally first is followed. So a
+    diagonal step is followed by the same or by either of its straight directions; a straight step
+    by the same, or by a turn round a corner that it has just passed (the jump points of Harabor and
+    Grastien, without corner cutting).
     """
     if reached == NO_DIRECTION:
         kept = 0xFF
@@ -55,7 +56,10 @@ CANONICAL = np.array([canonical_steps(d, near) for d in range(9) for near in ran
 
 
 def corner_turns(near: int) -> int:
-    """How many diagonals a way that comes straight may have to turn to, over all it can come by."""
+    """Number of forced diagonal neighbours, summed over the four straight arrival directions.
+
+    Forced neighbours are those of jump-point search (see ``canonical_steps``).
+    """
     turns = 0
     for d in (0, 2, 4, 6):
         if near >> (d + 4) % 8 & 1:
@@ -80,7 +84,7 @@ def components(free: npt.NDArray[np.bool_]) -> npt.NDArray[np.int32]:
 
 @njit(cache=True)
 def find_near(blocked: Bytes, near: Bytes) -> None:
-    """Fills ``near`` [rows, columns]; ``blocked`` is the same cells, 0 or 1, with a ring of more."""
+    """Fill ``near`` [rows, columns]; ``blocked`` (0 or 1) has one more row or column all round."""
     rows, columns = near.shape
     for y in range(rows):
         above, here, below = blocked[y], blocked[y + 1], blocked[y + 2]
@@ -97,7 +101,7 @@ def find_near(blocked: Bytes, near: Bytes) -> None:
 
 @njit(cache=True)
 def count_turns(near: Bytes, stride: int) -> tuple[int, int]:
-    """Of every ``stride``-th node, how many are free, and the sum of their ``TURNS``."""
+    """Number of free nodes among every ``stride``-th one, and the sum of their ``TURNS``."""
     free = total = 0
     for node in range(0, near.size, stride):
         free += near[node] != 0

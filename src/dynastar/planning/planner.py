@@ -1,4 +1,4 @@
-"""Planning on a map: search, way out of the inflation, smoothing, and the errors in metres."""
+"""Planning on a map in metres: way out of the inflation, search and smoothing."""
 
 import functools
 import time
@@ -61,8 +61,8 @@ class Plan:
     ``path`` is smoothed, ``grid_path`` the way over the cells' centres; both lie in the map frame,
     in metres, and run exactly from start to goal. ``cells`` (n, 2) are the way's cells and ``cost``
     their length in cells. ``expanded`` counts the cells that were expanded, ``explored`` (m, 2)
-    lists them or is None; ``time_ms`` is for search and smoothing. ``radius`` (m) is kept free
-    along ``path`` from ``clear_from`` metres on: before, it leads a robot out that was too close.
+    lists them or is None; ``time_ms`` is for search and smoothing. ``path`` keeps ``radius`` (m)
+    free from ``clear_from`` metres on; up to there it leads a start out of the inflation.
     """
 
     planner: str
@@ -78,12 +78,12 @@ class Plan:
 
 
 class GridPlanner:
-    """A map prepared once for planning a disc's way over it, again and again.
+    """A map prepared once for many plans for a disc of ``radius`` metres.
 
-    ``radius`` is the disc's in metres; ``unknown`` says whether unknown cells are "free" or
-    "blocked" to it. Blocked is also what lies outside the map. Where ``grid`` is the map refined, a
-    cell of the map is ``cell`` of its cells wide, and Eq. 2 counts in those. Raises ConfigError for a
-    radius below 0 or a planner that does not exist.
+    ``unknown`` says whether unknown cells are "free" or "blocked"; cells outside the map are
+    blocked. Where ``grid`` is a refined map, a cell of the map is ``cell`` of its cells wide, and
+    Eq. 2 counts in cells of the map. Raises ConfigError for a radius below 0 or a planner that does
+    not exist, InputError for a ``grid`` of another type.
     """
 
     def __init__(
@@ -111,16 +111,16 @@ class GridPlanner:
 
     @property
     def blocked(self) -> Mask:
-        """Where something is, [rows, columns], read-only."""
+        """True where a cell is blocked, [rows, columns]; read-only."""
         return self._inflated_grid.blocked
 
     @property
     def inflated(self) -> Mask:
-        """Where the disc's centre may not be, [rows, columns]; a copy."""
+        """True where the disc's centre may not be, [rows, columns]; a copy."""
         return self._inflated_grid.search.occupied
 
     def mark(self, row0: int, col0: int, patch_blocked: npt.ArrayLike) -> None:
-        """Replace the window of the map at (row0, col0), true where something is now.
+        """Replace the window of the map at (row0, col0), true where a cell is blocked now.
 
         The next plan takes it into account. Raises OutOfMap if the window leaves the map.
         """
@@ -131,8 +131,8 @@ class GridPlanner:
     ) -> Plan:
         """The path from start to goal, both (x, y) in metres, by the configured planner or another.
 
-        A start that is too close to something is led out the shortest way first. Raises OutOfMap,
-        StartOccupied, GoalOccupied or NoPath.
+        From a start inside the inflation the path first takes the shortest way out that leads on to
+        the goal. Raises OutOfMap, StartOccupied, GoalOccupied or NoPath.
         """
         try:
             return self._plan(start_xy, goal_xy, explored, planner)
@@ -184,7 +184,7 @@ class GridPlanner:
     def path_blocked_at(self, points: npt.ArrayLike, radius: float | None = None) -> float | None:
         """Metres along a polyline (n, 2), in metres, up to where the disc first touches something.
 
-        None if it can follow the polyline to its end. ``radius`` (m) stands in for the planner's.
+        None if the disc can follow the polyline to its end. ``radius`` (m) replaces the planner's.
         """
         cells = self.grid.frame.points_to_grid(points)
         if len(cells) == 1:
@@ -198,9 +198,9 @@ class GridPlanner:
     def _search_from(
         self, start: Point, goal: Cell, explored: bool, planner: str
     ) -> tuple[Cells, SearchResult]:
-        """The shortest way out of the inflation that leads on to the goal, and the path from its end.
+        """The shortest way out of the inflation that leads on to the goal, and the rest of the path.
 
-        The way is empty where the start is outside the inflation.
+        The way out is empty if the start is outside the inflation.
         """
         inflated = self._inflated_grid
         cell, way = inflated.fitting_cell(start), np.empty((0, 2), np.int32)
@@ -231,7 +231,7 @@ class GridPlanner:
         return row, column
 
     def _misfit(self, name: str, point: Point) -> str:
-        """Words for a point where the disc does not fit; ``explained`` says why."""
+        """Message for a point where the disc does not fit; ``explained`` says why."""
         x, y = self.grid.frame.to_world(*point)
         return f"the {name} ({x:g}, {y:g}) has no room for a radius of {self.radius:.3g} m"
 
@@ -252,10 +252,10 @@ def plan(
     unknown: Unknown = "blocked",
     explored: bool = False,
 ) -> Plan:
-    """Plans once: from ``start`` to ``goal``, (x, y) in metres, for a disc of ``radius`` metres.
+    """Plan once from ``start`` to ``goal``, (x, y) in metres, for a disc of ``radius`` metres.
 
-    A pose or a Goal is as good as a point. Raises OutOfMap, StartOccupied, GoalOccupied or NoPath,
-    ConfigError for an unknown planner, and InputError for what is no map or point.
+    A pose or a Goal may be given for a point. Raises OutOfMap, StartOccupied, GoalOccupied or
+    NoPath, ConfigError for an unknown planner, InputError for a map or point of another type.
     """
     config = PlannerConfig(planner=planner)
     try:
@@ -266,7 +266,7 @@ def plan(
 
 @functools.cache
 def warm_up() -> None:
-    """Compiles or loads the kernels, once in a process, so that no plan's time counts it."""
+    """Compile or load the kernels, once in a process, so that it does not count as planning time."""
     blocked = np.zeros((3, 3), dtype=bool)
     SearchGrid(blocked).search((0, 0), (2, 2), "improved")
     smooth(blocked, [[0.5, 0.5], [0.5, 2.5], [2.5, 2.5]], 0.0, 1.0)
@@ -275,7 +275,7 @@ def warm_up() -> None:
 
 @functools.cache
 def warm_up_all() -> None:
-    """The same for every planner, for smoothing at any angle, and for searching again."""
+    """Compile or load the kernels of every planner, of smoothing at any angle and of replanning."""
     rng = np.random.default_rng(0)
     blocked = rng.random((30, 30)) < 0.3
     blocked[[0, -1]] = blocked[:, [0, -1]] = False  # so many corners, and yet a way round
@@ -291,6 +291,6 @@ def warm_up_all() -> None:
 
 
 def _without_repeats(line: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """A polyline (n, 2) without points that are where the one before is."""
+    """A polyline (n, 2) without the points that repeat the one before."""
     steps = np.abs(np.diff(line, axis=0)).max(axis=1)
     return line[np.concatenate([[True], steps > 1e-9])]

@@ -16,15 +16,14 @@ Cells = npt.NDArray[np.int32]
 Cell = tuple[int, int]
 
 ALGORITHMS = {name: name for name in (*PLANNERS, "jump", "auto")}
-SAMPLED = 1 << 12  # cells that are looked at to tell what the map is like
-JUMP_BELOW = 0.3  # turns round corners for a free cell, up to which jumping is the faster
+SAMPLED = 1 << 12  # cells sampled to choose between jump and astar
+JUMP_BELOW = 0.3  # turns round corners per free cell, up to which jumping is faster
 
 
 class SearchResult(NamedTuple):
-    """A way: ``cells`` (n, 2) of (row, column), its ``cost`` and the number of ``expanded`` cells.
+    """A way: ``cells`` (n, 2) of (row, column) and its length ``cost`` in cells.
 
-    The cost is its length in cells. ``explored`` (m, 2) lists the expanded cells, row by row, or is
-    None if it was not asked for.
+    ``expanded`` counts the expanded cells; ``explored`` (m, 2) lists them row by row, or is None.
     """
 
     cells: Cells
@@ -67,7 +66,7 @@ class SearchGrid:
         self._sums: npt.NDArray[np.int32] | None = None
         self._lines: tuple[jump_kernel.Words, jump_kernel.Words] | None = None
         self._jumps: bool | None = None
-        self._labels = np.zeros(0, np.int64)  # made when a search wants it
+        self._labels = np.zeros(0, np.int64)  # made by the first search
         self._stamp = 0
         self._heads = np.empty(bucket_kernel.BUCKETS, np.int32)
         self._pool = np.empty(1024, np.int64)  # or the heap's keys
@@ -97,7 +96,7 @@ class SearchGrid:
         return self._sums
 
     def recount(self) -> None:
-        """Says that ``counted`` has changed: P of Eq. 2 is summed up anew when it is next wanted."""
+        """Tell that ``counted`` has changed: the sums for P of Eq. 2 are made again when needed."""
         self._sums = None
 
     @property
@@ -113,9 +112,9 @@ class SearchGrid:
         return self._lines
 
     def update(self, row0: int, col0: int, patch: npt.ArrayLike) -> None:
-        """Replaces the window that starts at (row0, col0) by ``patch``, true where occupied.
+        """Replace the window that starts at (row0, col0) by ``patch``, true where occupied.
 
-        What was prepared is kept up in and round the window. Raises OutOfMap if the window does
+        What was prepared is updated in and round the window. Raises OutOfMap if the window does
         not lie in the map.
         """
         mask = np.asarray(patch, dtype=bool)
@@ -146,7 +145,7 @@ class SearchGrid:
             self._tree.changed(top + 1, left + 1, end + 1, side + 1, bool((change < 0).any()))
 
     def forget(self) -> None:
-        """Drops what is known of ways to the last goal: the next search begins from nothing."""
+        """Drop what is known about ways to the last goal: the next search starts from nothing."""
         if self._tree is not None:
             self._tree.forget()
 
@@ -162,10 +161,10 @@ class SearchGrid:
 
         dijkstra, astar, jump and auto find the shortest way of the 8-connected grid, within 3e-7 of
         its length: all round, towards the goal, by jump points, or as fits the map. Where auto does
-        not jump, it searches from the goal, and to the same goal the next time only what cells that
-        closed meanwhile have cut off (see ``forget``). weighted and improved are Eqs. 2-3 with the
-        terms of ``heuristic``; weighted with a weight of 1 is the traditional A* on the improved
-        one's kernel, as an ablation wants it.
+        not jump, it searches from the goal; the next time to the same goal it searches only where
+        cells that closed meanwhile have cut the ways (see ``forget``). weighted and improved are
+        Eqs. 2-3 with the terms of ``heuristic``; weighted with a weight of 1 is the traditional A*
+        on the kernel of the improved one, for ablations.
 
         Raises OutOfMap, StartOccupied, GoalOccupied or NoPath; ConfigError for an unknown name.
         """
@@ -245,7 +244,7 @@ class SearchGrid:
     def _search_from_goal(self, start: Cell, goal: Cell) -> tuple[tuple[Cells, float] | None, int]:
         """The shortest way and its length, or None, and how many cells were expanded.
 
-        It uses and keeps what is known of the ways to the goal.
+        Uses and keeps the ways to the goal that earlier searches found.
         """
         if self._tree is None:
             self._tree = GoalTree(self._near)
@@ -287,7 +286,7 @@ class SearchGrid:
 
 
 def check_window(row0: int, col0: int, window: tuple[int, ...], whole: tuple[int, int]) -> None:
-    """MapError or OutOfMap unless a window of that shape, put at (row0, col0), lies in the map."""
+    """Raise MapError or OutOfMap unless a window of that shape at (row0, col0) lies in the map."""
     if len(window) != 2:
         raise MapError(f"a patch has shape {window}: expected (rows, columns)")
     if row0 < 0 or col0 < 0 or row0 + window[0] > whole[0] or col0 + window[1] > whole[1]:

@@ -1,4 +1,4 @@
-"""Whether a disc can go along a straight line: exact tests against the squares of blocked cells.
+"""Exact tests whether a disc can go along a straight line past the squares of blocked cells.
 
 Everything is in cell coordinates: cell [r, c] is the square from (r, c) to (r + 1, c + 1).
 """
@@ -71,7 +71,7 @@ def point_is_stopped(
     """Whether a point going from a to b enters a blocked cell, or slips between it and another.
 
     It may touch a blocked cell, but not pass the seam between two that share a side, nor the
-    corner that two share diagonally. Each pair is looked at from its lower cell.
+    corner that two share diagonally. Each pair is tested from its lower cell.
     """
     e = EPSILON
     rows, columns = blocked.shape
@@ -92,9 +92,9 @@ def point_is_stopped(
 
 @njit(cache=True)
 def is_clear(blocked: Bytes, ay: float, ax: float, by: float, bx: float, radius: float) -> bool:
-    """Whether a disc of ``radius`` going from a to b touches no blocked cell and stays on the map.
+    """Whether a disc of ``radius`` can go from a to b on the map without touching a blocked cell.
 
-    Row by row, the part of the segment within the radius of a row says which columns matter.
+    For each row only the columns near the part of the segment within the radius are tested.
     """
     rows, columns = blocked.shape
     need = radius - EPSILON
@@ -147,7 +147,7 @@ def first_contact(blocked: Bytes, points: npt.NDArray[np.float64], radius: float
 
 
 def mask_bytes(blocked: npt.ArrayLike) -> Bytes:
-    """A mask as the kernels want it: contiguous, writable bytes (one type, one compilation)."""
+    """A mask for the kernels: contiguous, writable bytes (one type, one compilation)."""
     mask = np.ascontiguousarray(blocked, dtype=bool)
     return (mask if mask.flags.writeable else mask.copy()).view(np.uint8)
 
@@ -155,11 +155,11 @@ def mask_bytes(blocked: npt.ArrayLike) -> Bytes:
 def segment_clear(
     blocked: npt.ArrayLike, a: npt.ArrayLike, b: npt.ArrayLike, radius: float
 ) -> bool:
-    """Whether a disc can go straight from ``a`` to ``b`` without touching what is blocked.
+    """Whether a disc can go straight from ``a`` to ``b`` without touching a blocked cell.
 
     ``blocked`` is [rows, columns]; ``a`` and ``b`` are (row, column) in fractions of cells and
-    ``radius`` is in cells. Blocked is every blocked cell's whole square and all that lies outside
-    the map. A disc of radius 0 may touch squares but not slip between two that touch each other.
+    ``radius`` is in cells. The whole square of a blocked cell and the space outside the map are
+    blocked. A disc of radius 0 may touch squares but not slip between two that touch each other.
     """
     ay, ax = map(float, np.asarray(a, dtype=np.float64))
     by, bx = map(float, np.asarray(b, dtype=np.float64))

@@ -1,4 +1,4 @@
-"""Smoothing (end of section III.A): the string is pulled taut, then its corners are rounded."""
+"""Smoothing (end of section III.A): pulls a path taut like a string, then rounds its corners."""
 
 import math
 
@@ -30,7 +30,7 @@ def polyline_length(points: Points) -> float:
 
 @njit(cache=True)
 def bends(points: Points, line: Points) -> int:
-    """Copies a polyline's ends and the points where it bends to ``line``; how many they are."""
+    """Copy a polyline's ends and the points where it bends to ``line``. Returns their number."""
     count = 0
     for i in range(len(points)):
         if 0 < i < len(points) - 1:
@@ -45,7 +45,7 @@ def bends(points: Points, line: Points) -> int:
 
 @njit(cache=True)
 def gap(points: Points, i: int, y: float, x: float) -> float:
-    """From a polyline's point ``i`` to another place."""
+    """Distance from a polyline's point ``i`` to (y, x)."""
     return norm(y - points[i, 0], x - points[i, 1])
 
 
@@ -53,9 +53,9 @@ def gap(points: Points, i: int, y: float, x: float) -> float:
 def leave_out(
     blocked: Bytes, line: Points, n: int, radius: float, moved: npt.NDArray[np.bool_]
 ) -> int:
-    """Drops corners of the first ``n`` points that can be passed on the other side of what holds them.
+    """Drop those corners of the first ``n`` points that a clear straight line can replace.
 
-    How many points are left; ``moved`` marks the neighbours of those that were dropped.
+    Returns the number of points left; ``moved`` marks the neighbours of the dropped ones.
     """
     count = 1
     moved[0] = False
@@ -73,11 +73,11 @@ def leave_out(
 
 @njit(cache=True)
 def pull_taut(blocked: Bytes, points: Points, radius: float) -> Points:
-    """Pulls every corner, round after round, until none gets shorter.
+    """Pull every corner, round after round, until none gets shorter.
 
-    A round looks at a corner once, and only if it or a neighbour has moved since the last look. After
-    some that were pulled straight in a row the next is left for the next round, which so has few of
-    them left in open space, and long ways stay cheap.
+    A round pulls a corner once, and only if the corner or a neighbour has moved since the last
+    pull. After ``IN_A_ROW`` corners that were pulled straight, the next corner is left for the next
+    round. In open space few corners then remain for each round, so long ways stay cheap.
     """
     most = 3 * len(points) + 64
     line, pulled = np.empty((most, 2)), np.empty((most, 2))
@@ -124,7 +124,7 @@ def pull_taut(blocked: Bytes, points: Points, radius: float) -> Points:
 
 @njit(cache=True)
 def join_close(blocked: Bytes, points: Points, radius: float) -> Points:
-    """Two corners closer than ``FINEST`` become the one where the lines to them meet, if that is clear."""
+    """Replace two corners closer than ``FINEST`` by the one where the lines to them meet, if clear."""
     line = points.copy()
     count = 1
     i = 1
@@ -157,7 +157,7 @@ def join_close(blocked: Bytes, points: Points, radius: float) -> Points:
 
 @njit(cache=True)
 def bevel(blocked: Bytes, points: Points, radius: float, largest: float) -> Points:
-    """Cuts every corner once, up to ``largest`` cells from it, as far as the disc can follow."""
+    """Cut every corner once, up to ``largest`` cells from it, as far as the disc can follow."""
     result = np.empty((2 * len(points), 2))
     result[0] = points[0]
     count = 1
@@ -184,7 +184,7 @@ def bevel(blocked: Bytes, points: Points, radius: float, largest: float) -> Poin
 
 @njit(cache=True)
 def smooth_kernel(blocked: Bytes, points: Points, radius: float, rounding: float) -> Points:
-    """``smooth`` on arrays of one type; no points at all where some given are not finite."""
+    """``smooth`` on arrays of one type; returns no points if a given one is not finite."""
     length = polyline_length(points)
     if not math.isfinite(length):
         return np.empty((0, 2))
@@ -207,10 +207,10 @@ def smooth(
     """A shorter polyline from the first to the last of ``points`` that a disc can follow.
 
     ``blocked`` is [rows, columns]; ``points`` (n, 2) are (row, column) in fractions of cells;
-    ``radius``, the disc's, and ``rounding``, how far from a corner its rounding may begin, are in
-    cells. The result is nowhere closer to a blocked cell than the radius if the polyline given is
-    not, and never longer; see ``segment_clear`` for what counts. Raises ValueError for a point that
-    is not finite, and for a radius or rounding that is not, or is below 0.
+    ``radius`` of the disc and ``rounding``, the distance from a corner at which its rounding may
+    begin, are in cells. The result is never longer, and it keeps the radius from blocked cells if
+    the given polyline does; see ``segment_clear`` for what is clear. Raises ValueError for a point,
+    radius or rounding that is not finite, and for a radius or rounding below 0.
     """
     line = np.array(points, dtype=np.float64).reshape(-1, 2)
     if not (0.0 <= radius < math.inf and 0.0 <= rounding < math.inf):

@@ -1,10 +1,10 @@
-"""Where a string runs taut round one of its corners.
+"""The bend of a string after it is pulled taut round one of its corners.
 
-Let the string come from a, bend at b and go on to c. What it can be caught on lies in the triangle
-a, b, c, and of that only convex corners of blocked cells. Pulled, it leaves a along the first line
-that touches such a corner as it swings from b towards c, and comes to c along the first that does
-from there; those two lines meet in a nearer b, and where they touch two corners, a third line cuts
-that bend off, too. A disc's centre keeps the radius from each corner.
+Let the string come from a, bend at b and go on to c. It can be caught only on convex corners of
+blocked cells in the triangle a, b, c. After the pull it leaves a along the first line that touches
+such a corner as the line swings from b towards c, and reaches c along the first such line from
+there. The two lines meet in a bend nearer to the line a - c; where they touch two corners, a third
+line cuts that bend off. A disc's centre keeps the radius from each corner.
 """
 
 import math
@@ -29,11 +29,11 @@ def touches_before(
     ay: float, ax: float, by: float, bx: float, cy: float, cx: float,
     oy: float, ox: float, qy: int, qx: int, side: float, radius: float, uy: float, ux: float,
 ) -> tuple[bool, float, float]:  # fmt: skip
-    """Whether a disc's line from a, swinging from b to c, touches the corner o before the unit line u.
+    """Whether a line from a that swings from b to c touches the corner o before it reaches u.
 
-    With the unit direction of the line that does. ``side`` is 1 where it swings to the left, -1 to
-    the right. From o, the blocked cell lies towards q, and has to lie that way of the line. Only what
-    lies on the line's part from a to b - c can be touched.
+    u is a unit direction; the unit direction of the touching line is returned, too. ``side`` is 1 if
+    the line swings to the left, -1 to the right. From o, the blocked cell lies towards q, and has to
+    lie on that side of the line. Only the line's part from a to b - c can touch a corner.
     """
     py, px = oy - ay, ox - ax
     square = py * py + px * px
@@ -57,10 +57,10 @@ def touches_before(
 def edge(
     ay: float, ax: float, by: float, bx: float, side: float, r: float
 ) -> tuple[float, float, float]:
-    """What lies inside the edge a - b of a triangle, or up to r outside: slope, lowest and highest.
+    """The columns inside the edge a - b of a triangle, or up to r outside: slope, lowest, highest.
 
-    In a row y these are columns from ax + slope (y - ay) + lowest to the same + highest. The inside
-    is on the left of the edge where ``side`` is 1, on the right where it is -1.
+    In a row y these are the columns from ax + slope (y - ay) + lowest to the same + highest. The
+    inside is on the left of the edge if ``side`` is 1, on the right if it is -1.
     """
     dy, dx = by - ay, bx - ax
     if abs(dy) < LEVEL:
@@ -74,9 +74,9 @@ def edge(
 
 @njit(cache=True)
 def convex_corner(blocked: Bytes, row: int, column: int) -> tuple[bool, int, int]:
-    """Whether a cell's low corner is that of one blocked cell alone, and which way that lies.
+    """Whether a cell's low corner belongs to a single blocked cell, and the direction to that cell.
 
-    Where two touch across, what is free on either side is a corner to go into and none to go round.
+    Where two blocked cells touch diagonally, no string can go round the corner that they share.
     """
     low, low_right = np.int64(blocked[row - 1, column - 1]), np.int64(blocked[row - 1, column])
     high, high_right = np.int64(blocked[row, column - 1]), np.int64(blocked[row, column])
@@ -91,7 +91,7 @@ def convex_corner(blocked: Bytes, row: int, column: int) -> tuple[bool, int, int
 def taut_bend(
     blocked: Bytes, ay: float, ax: float, by: float, bx: float, cy: float, cx: float, radius: float
 ) -> Bend:
-    """The bends that a taut string has between a and c, where it has one at b now; see ``Bend``."""
+    """The bends of the taut string between a and c in place of the one at b; see ``Bend``."""
     wy, wx, vy, vx = by - ay, bx - ax, cy - ay, cx - ax
     turn, length = wx * vy - wy * vx, norm(vy, vx)
     if length < 1e-9 or abs(turn) < 1e-9:
@@ -162,7 +162,7 @@ def all_clear(
     blocked: Bytes, ay: float, ax: float, py: float, px: float,
     qy: float, qx: float, cy: float, cx: float, radius: float,
 ) -> bool:  # fmt: skip
-    """Whether a disc can go from a to c by p and q, which may be one."""
+    """Whether a disc can go from a to c by p and q, which may be the same point."""
     return (
         is_clear(blocked, ay, ax, py, px, radius)
         and is_clear(blocked, qy, qx, cy, cx, radius)
@@ -174,10 +174,10 @@ def all_clear(
 def pulled_bend(
     blocked: Bytes, ay: float, ax: float, by: float, bx: float, cy: float, cx: float, radius: float
 ) -> Bend:
-    """What a pull makes of the bend at b: shorter, and clear for a disc that can go by b; see ``Bend``.
+    """The bend at b after one pull: shorter, and clear for a disc that can go by b; see ``Bend``.
 
-    Where the taut string is caught by more than two corners, the bend is only cut, for the next pull
-    to go on with. ``LEFT`` stands first where nothing gets shorter.
+    Where the taut string is caught by more than two corners, the bend is only cut, and the next pull
+    goes on from there. ``LEFT`` comes first if the way does not get shorter.
     """
     now = norm(by - ay, bx - ax) + norm(cy - by, cx - bx)
     how, py, px, qy, qx = taut_bend(blocked, ay, ax, by, bx, cy, cx, radius)

@@ -1,9 +1,10 @@
-"""A shortest way found again after cells closed, from what the last search from the goal knows.
+"""A shortest way found again after cells closed, from the last search from the goal.
 
-A closed node of that search (the tree) whose way to the root still stands knows how far the goal is.
-One whose way was cut knows how far it is at least, and so does every other: were a node m nearer than
-the tree's way was long less what lies between m and the tree's start, m had been closed. These bounds are
-consistent, for cells only close, and so good that few nodes round the change are expanded.
+A closed node of that search (the tree) whose way to the root is not cut has the exact length to the
+goal. A closed node whose way was cut has a lower bound of it. From a node m that is not closed the
+length is at least max(octile(m, goal), length - octile(m, tree_start)), where length is that of the
+tree's way (triangle inequality). These bounds are consistent because cells only close, and so tight
+that few nodes round the change are expanded.
 """
 
 import numpy as np
@@ -35,8 +36,8 @@ CUT = 15  # in place of the direction of a node whose way to the root was cut
 FAR = 1 << 62
 
 
-def stands(label: int, stamp: int) -> bool:
-    """Whether a label is that of a tree's closed node whose way to the root was not cut."""
+def is_valid(label: int, stamp: int) -> bool:
+    """Whether a label is that of a closed node of a tree, whose way to the root was not cut."""
     closed = (int(label) & (STAMP_BITS | 1)) == stamp << STAMP_SHIFT | 1
     return closed and (int(label) >> DIRECTION_SHIFT) & 15 != CUT
 
@@ -46,10 +47,10 @@ def prune(
     near: Bytes, width: int, tree: Ints, stamp: int,
     top: int, left: int, bottom: int, right: int, stack: npt.NDArray[np.int32],
 ) -> npt.NDArray[np.int32]:  # fmt: skip
-    """Marks the nodes of a tree as cut that hang on steps which are none any more.
+    """Mark the nodes of a tree whose way to the root contains a step that is no longer legal.
 
     ``near`` has changed in rows ``top`` to ``bottom`` and columns ``left`` to ``right`` (padded, the
-    ends not included). Returns ``stack``, room to work in, which may have grown.
+    ends not included). Returns ``stack``, a work array, which may have grown.
     """
     steps = ROW_STEP * width + COLUMN_STEP
     closed = stamp << STAMP_SHIFT | 1
@@ -84,11 +85,11 @@ def search_again(
     near: Bytes, width: int, tree: Ints, tree_stamp: int, tree_start: int, goal: int,
     labels: Ints, stamp: int, start: int, heap: Ints, nodes: npt.NDArray[np.int32],
 ) -> tuple[int, int, int, Ints, npt.NDArray[np.int32]]:  # fmt: skip
-    """Expands from ``start`` until the way on is known; the ways stay in ``labels``.
+    """Expand from ``start`` until the way to ``goal`` is known. Writes ``labels``.
 
-    ``tree`` holds the labels of the search from ``goal`` that reached ``tree_start``. Returns the last
-    node of the way and the tree's that it steps to (-1 if there is no way), how many nodes were
-    expanded, and the work arrays, which may have grown.
+    ``tree`` holds the labels of the search from ``goal`` that reached ``tree_start``. Returns the
+    last node of the new way and the node of the tree that it steps to (-1 if there is no way), how
+    many nodes were expanded, and the work arrays, which may have grown.
     """
     steps = ROW_STEP * width + COLUMN_STEP
     tag, known = stamp << STAMP_SHIFT, tree_stamp << STAMP_SHIFT | 1
