@@ -43,6 +43,8 @@ def rooms(cells, way_on):
 def test_the_shortest_way_out_that_leads_on_is_taken(seed, radius):
     rng = np.random.default_rng(seed)
     blocked = rng.random(rng.integers(4, 26, 2)) < rng.choice([0.05, 0.1, 0.2, 0.4])
+    (row, column), (rows, columns) = rng.integers(0, 12, 2), rng.integers(0, 11, 2)
+    blocked[row : row + rows, column : column + columns] = True
     planner = planner_on(blocked, radius)
     inflated = planner.inflated
     far_inside = cv2.erode(inflated.astype(np.uint8), np.ones((3, 3), np.uint8), borderValue=1)

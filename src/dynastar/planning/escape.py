@@ -16,14 +16,15 @@ def reach_of_escape(radius: float) -> int:
 
 
 def way_out(grid: InflatedGrid, start: Cell, goal: Cell) -> Cells:
-    """Shortest way (n, 2) out of the inflation to a cell that is connected with ``goal``.
+    """Shortest way (n, 2) out of the inflation to a cell from which a path leads to ``goal``.
 
     The way leads through unblocked cells, at most ``reach_of_escape`` rows and columns from
     ``start``. A blocked start is first left straight for the nearest unblocked cell within the
-    radius + 2 cells, unless the radius is 0.
+    radius + 2 cells, unless the radius is 0. If all exits are connected with each other nearby, the
+    nearest is taken, and the search from it has to find out whether it leads on.
 
-    Raises StartOccupied if the way out reaches no cell outside the inflation, and NoPath if none of
-    the cells that it reaches is connected with the goal.
+    Raises StartOccupied if there is no exit, and NoPath if there are several that are not connected
+    nearby, and none leads on.
     """
     reach = reach_of_escape(grid.radius)
     top, left = max(start[0] - reach, 0), max(start[1] - reach, 0)
@@ -36,12 +37,15 @@ def way_out(grid: InflatedGrid, start: Cell, goal: Cell) -> Cells:
     free = ~grid.search.occupied
     lengths = near.flood(first)
     lengths[~free[window]] = np.inf
-    if np.isinf(lengths).all():
+    exits = np.isfinite(lengths)
+    if not exits.any():
         raise StartOccupied(f"no cell outside the inflation is reached from cell {start}")
-    parts = components(free)
-    lengths[parts[window] != parts[goal]] = np.inf
-    if np.isinf(lengths).all():
-        raise NoPath(f"no way out of the inflation leads from cell {start} to cell {goal}")
+    parts = components(free[window])[exits]
+    if (parts != parts[0]).any():  # else the whole map need not be labelled
+        parts = components(free)
+        lengths[parts[window] != parts[goal]] = np.inf
+        if np.isinf(lengths).all():
+            raise NoPath(f"no way out of the inflation leads from cell {start} to cell {goal}")
     row, column = divmod(int(lengths.argmin()), lengths.shape[1])
     way = near.way_to((row, column))
     if first != here:
