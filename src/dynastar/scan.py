@@ -48,6 +48,12 @@ class LaserScan:
         beams = np.arange(len(self.ranges), dtype=np.float64)
         return np.asarray(self.angle_min + self.angle_increment * beams)
 
+    @property
+    def full_circle(self) -> bool:
+        """True if the beams go all round, so that the last one is next to the first."""
+        step = abs(self.angle_increment)
+        return bool(step * len(self.ranges) > math.tau - 0.5 * step)
+
     def fault(self) -> str | None:
         """Describe why this scan is unusable, or None. Its number of beams may differ each time."""
         n = len(self.ranges)

@@ -119,8 +119,8 @@ class LocalMap:
     ) -> None:
         """Takes in one scan from the ``sensor`` pose; ``points`` are its ends, ``moving`` leaves out."""
         increment = scan.angle_increment
-        full = abs(increment) * len(scan.ranges) > math.tau - 0.5 * abs(increment)
-        limits, errors = (scan.range_min, scan.range_max), (range_error, heading_error)
+        full, errors = scan.full_circle, (range_error, heading_error)
+        limits = scan.range_min, scan.range_max
         narrowest = self.config.narrowest
         gaps = kernels.free_ranges(scan.ranges, limits, increment, full, errors, narrowest)
         beams = scan.angle_min, increment

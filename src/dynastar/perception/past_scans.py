@@ -62,9 +62,8 @@ class PastScans:
     def add(self, scan: LaserScan, sensor: Pose2D) -> None:
         """Takes in a scan from the ``sensor`` pose; drops what is too old, or has neighbours enough."""
         n, step = len(scan.ranges), scan.angle_increment
-        full = abs(step) * n > math.tau - 0.5 * abs(step)
         limits = scan.range_min, scan.range_max
-        ranges = free_ranges(scan.ranges, limits, step, full, self._errors, NARROWEST)
+        ranges = free_ranges(scan.ranges, limits, step, scan.full_circle, self._errors, NARROWEST)
         view = [*map(float, sensor), float(scan.angle_min), float(step), float(n)]
         now, scans = scan.stamp, [(scan.stamp, view, ranges), *self._kept]
         kept = scans[:1]

@@ -123,8 +123,9 @@ class Tracker:
         dt = now - self._stamp if math.isfinite(self._stamp) else 0.0
         self._stamp = now
         step = abs(scan.angle_increment)
-        full = step * len(scan.ranges) > math.tau - 0.5 * step
-        view = Sensor(float(sensor.x), float(sensor.y), step, len(scan.ranges), int(full))
+        view = Sensor(
+            float(sensor.x), float(sensor.y), step, len(scan.ranges), int(scan.full_circle)
+        )
         before = self._past.since(-math.inf)
         lately = before._replace(since=now - kernels.MISSED)
         kernels.predict(self._rows, dt, config.acceleration)
