@@ -56,7 +56,7 @@ def groups_of(points, free=everywhere, known=NOTHING, discs=NO_DISCS):
     order = np.argsort(angles)
     points, beams = points[order], np.round((angles[order] + math.pi) / STEP).astype(np.int64)
     owned = d.find_owners(points, HERE, known, space(free), discs)
-    return points, d.find_groups(points, beams, HERE, owned, discs, 0.2, 1.4)
+    return points, d.find_groups(points, beams, HERE, owned, discs, 1.4)
 
 
 @given(st.floats(0.1, 1.0), st.floats(0.05, 0.7))

@@ -8,7 +8,7 @@ from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.perception.detection import Known
 from dynastar.perception.local_map import SEEN_OCCUPIED, LocalMap
 from dynastar.perception.local_map_kernels import scan_points
-from dynastar.perception.tracking import NOTHING_KNOWN, Tracker, TrackerConfig
+from dynastar.perception.tracking import NOTHING_KNOWN, Tracker
 from dynastar.robot import ROBOTS, Lidar
 from dynastar.simulation.lidar import LidarSimulator
 
@@ -329,10 +329,6 @@ def test_forget_drops_all_tracks():
     assert watcher.movers
     watcher.tracker.forget()
     assert watcher.tracker.tracks == ()
-
-
-def test_settings_of_whole_numbers_are_taken_as_floats():
-    assert Tracker(TrackerConfig(rest_time=2)).config.rest_time.__class__ is float
 
 
 def test_a_scan_without_readings_is_taken_in():

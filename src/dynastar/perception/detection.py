@@ -25,6 +25,7 @@ D_X, D_Y, D_RADIUS, D_MARGIN, D_MEASURED = range(5)
 MAPPED, NOBODY = -2, -1  # owners of points besides the tracks: the static map, and none
 ADJACENT = 3  # beams apart, up to which two points are neighbours
 BEHIND = 0.05  # m behind a point that has to have been seen free
+GAP = 0.2  # m between neighbouring points that separates two objects, besides the beams' spacing
 FEWEST = 3  # points of a group
 TYPICAL_RADIUS = 0.3  # m, assumed until both ends were in view
 
@@ -134,9 +135,7 @@ def find_owners(
 
 
 @njit(cache=True)
-def compare_neighbours(
-    points: Floats, beams: Integers, sensor: Sensor, gap: float
-) -> tuple[Mask, Integers]:
+def compare_neighbours(points: Floats, beams: Integers, sensor: Sensor) -> tuple[Mask, Integers]:
     """Whether each point is apart from the one before, and how it lies behind it.
 
     That is 1 for further away, -1 for nearer, 0 for neither, and 2 if nothing was hit between them.
@@ -152,8 +151,8 @@ def compare_neighbours(
         elif (beams[i] - beams[i - 1]) % sensor.beams > ADJACENT:
             apart[i], jumps[i] = True, 2
         else:
-            apart[i] = width > gap + 2.0 * r * sensor.step
-            jumps[i] = 1 if r > before + 0.5 * gap else (-1 if r < before - 0.5 * gap else 0)
+            apart[i] = width > GAP + 2.0 * r * sensor.step
+            jumps[i] = 1 if r > before + 0.5 * GAP else (-1 if r < before - 0.5 * GAP else 0)
     return apart, jumps
 
 
@@ -164,18 +163,17 @@ def find_groups(
     sensor: Sensor,
     owned: tuple[Integers, Mask],
     discs: Floats,
-    gap: float,
     widest: float,
 ) -> Floats:
     """Groups (m, GROUP_COLUMNS) of neighbouring points that may be one moving obstacle.
 
-    A group breaks where neighbours lie further apart than ``gap`` plus twice the beams' spacing and
+    A group breaks where neighbours lie further apart than GAP plus twice the beams' spacing and
     where the owner changes (``owned``: see ``find_owners``). Of what is wider than ``widest``, only
     runs of points in space that was seen free are groups: a person may walk close to a wall.
     """
     n, (owner, free) = len(points), owned
     found, m = np.empty((n, GROUP_COLUMNS)), 0
-    breaks, jumps = compare_neighbours(points, beams, sensor, gap)
+    breaks, jumps = compare_neighbours(points, beams, sensor)
     for k in range(2 * n - 2):  # a disc of assumed radius owns what is joined to it, on both sides
         i, j = (k + 1, k) if k < n - 1 else (2 * n - 3 - k, 2 * n - 2 - k)
         t = owner[j]
@@ -224,7 +222,7 @@ def find_groups(
             else:
                 radius = max(radius if t >= 0 else TYPICAL_RADIUS, seen)
             group[G_X], group[G_Y], group[G_RADIUS] = x, y, radius
-            if seen <= 0.5 * widest and (not part or seen > 0.25 * gap):
+            if seen <= 0.5 * widest and (not part or seen > 0.25 * GAP):
                 m += 1
         start = stop
     return found[:m]

@@ -24,23 +24,8 @@ NOTHING_KNOWN = Known(np.zeros((1, 1), np.bool_), GridFrame(1.0))
 class TrackerConfig(NamedTuple):
     """Settings of detection and tracking."""
 
-    gap: Annotated[
-        float, Field("gap between points that separates two objects", "m", 0.01, 2.0)
-    ] = 0.2
     widest: Annotated[float, Field("largest width of a moving obstacle", "m", 0.1, 5.0)] = 1.4
-    slowest: Annotated[float, Field("speed below which a track is at rest", "m/s", 0.01, 2.0)] = (
-        0.12
-    )
     fastest: Annotated[float, Field("largest speed of a moving obstacle", "m/s", 0.1, 50.0)] = 3.0
-    acceleration: Annotated[
-        float, Field("spectral density of the acceleration", "m2/s3", 0.01, 20.0)
-    ] = 0.1
-    free_fraction: Annotated[
-        float, Field("fraction of a mover's points in space seen free before", "", 0.0, 1.0)
-    ] = 0.4
-    rest_time: Annotated[
-        float, Field("time at rest after which a track has stopped", "s", 0.0, 60.0)
-    ] = 1.0
     occluded_time: Annotated[
         float, Field("time for which a track out of sight is kept", "s", 0.0, 60.0)
     ] = 6.0
@@ -92,7 +77,7 @@ class Tracker:
         range_error: float = 0.0,
         heading_error: float = 0.0,
     ) -> None:
-        self.config = TrackerConfig(*map(float, config))
+        self.config = config
         self._rows = np.zeros((0, kernels.COLUMNS))
         self._stamp = -math.inf
         self._next_id = 0
@@ -128,14 +113,14 @@ class Tracker:
         )
         before = self._past.since(-math.inf)
         lately = before._replace(since=now - kernels.MISSED)
-        kernels.predict(self._rows, dt, config.acceleration)
+        kernels.predict(self._rows, dt)
         discs = kernels.expected_discs(self._rows, now)
         owned = detection.find_owners(points, view, known, before, discs)
-        groups = detection.find_groups(points, beams, view, owned, discs, config.gap, config.widest)
-        taken = kernels.associate(self._rows, groups, now, config.free_fraction)
+        groups = detection.find_groups(points, beams, view, owned, discs, config.widest)
+        taken = kernels.associate(self._rows, groups, now)
         kernels.correct(self._rows, groups, points, view, now)
         kernels.hide(self._rows, dt, now, lately, config.occluded_time)
-        for row in self._rows[kernels.judge(self._rows, now, lately, config)]:
+        for row in self._rows[kernels.judge(self._rows, now, lately, config.fastest)]:
             self._erase(row, local_map)
         moving = kernels.points_on(points, owned[0], self._rows, groups)
         kept = self._rows[self._rows[:, kernels.T_STATE] != kernels.LOST]
@@ -165,7 +150,7 @@ class Tracker:
         known = rows[:, kernels.T_STATE] != kernels.TENTATIVE
         speed = np.hypot(rows[:, kernels.T_VX], rows[:, kernels.T_VY])
         unsure = kernels.SURE * np.sqrt(rows[:, kernels.T_VV])
-        fast = speed > np.maximum(self.config.slowest, unsure)
+        fast = speed > np.maximum(kernels.REST_SPEED, unsure)
         listed = []
         for row in rows[known | fast].tolist():
             x, y, vx, vy = row[kernels.T_X : kernels.T_VY + 1]
@@ -174,7 +159,7 @@ class Tracker:
             if row[kernels.T_STATE] != kernels.TENTATIVE:
                 state = "confirmed" if row[kernels.T_STATE] == kernels.CONFIRMED else "stopped"
                 state = "occluded" if unseen > kernels.MISSED else state
-            still = 0.0 if math.hypot(vx, vy) > self.config.slowest else now - row[kernels.T_MOVED]
+            still = 0.0 if math.hypot(vx, vy) > kernels.REST_SPEED else now - row[kernels.T_MOVED]
             sds = math.sqrt(row[kernels.T_PP]), math.sqrt(row[kernels.T_VV])
             shape = x, y, vx, vy, row[kernels.T_RADIUS], *sds
             age = now - row[kernels.T_BORN]

@@ -27,19 +27,23 @@ STEADY = 0.14  # s that motion has to last
 FITS = 4.0  # the largest T_MISFIT of steady motion; 2 is expected
 SHIFT = 0.05  # m that the centre of what moves shifts by at most when an end comes into view or out
 MISSED = 0.35  # s that something in view may go undetected
+ACCELERATION = 0.1  # m2/s3, spectral density of the acceleration
+FREE_FRACTION = 0.4  # of the points of a moving obstacle lie in space that was seen free before
+REST_SPEED = 0.12  # m/s below which a track is at rest
+REST_TIME = 1.0  # s at rest after which a track has stopped
 SMOOTHING = 0.3  # s over which the radius, T_FREE and T_MISFIT are averaged
 
 
 @njit(cache=True)
-def predict(tracks, dt, density):
-    """Moves every track ahead by ``dt`` (s) under white acceleration noise of ``density`` (m2/s3)."""
+def predict(tracks, dt):
+    """Moves every track ahead by ``dt`` (s) under white acceleration noise."""
     for t in range(len(tracks)):
         row = tracks[t]
         row[T_X] += row[T_VX] * dt
         row[T_Y] += row[T_VY] * dt
-        row[T_PP] += 2.0 * dt * row[T_PV] + dt * dt * row[T_VV] + density * dt**3 / 3.0
-        row[T_PV] += dt * row[T_VV] + 0.5 * density * dt * dt
-        row[T_VV] += density * dt
+        row[T_PP] += 2.0 * dt * row[T_PV] + dt * dt * row[T_VV] + ACCELERATION * dt**3 / 3.0
+        row[T_PV] += dt * row[T_VV] + 0.5 * ACCELERATION * dt * dt
+        row[T_VV] += ACCELERATION * dt
         row[T_GROUP] = -1.0
 
 
@@ -59,7 +63,7 @@ def expected_discs(tracks, now):
 
 
 @njit(cache=True)
-def associate(tracks, groups, now, free_fraction):
+def associate(tracks, groups, now):
     """Sets T_GROUP of the tracks, nearest pairs first, within the gate; returns which are taken.
 
     A track that was out of sight takes only a group in space that was seen free.
@@ -73,7 +77,7 @@ def associate(tracks, groups, now, free_fraction):
         unseen = now - row[T_SEEN] > MISSED
         for c in range(len(groups)):
             owner = groups[c, d.G_TRACK]
-            if (owner >= 0.0 and owner != t) or (unseen and groups[c, d.G_FREE] < free_fraction):
+            if (owner >= 0.0 and owner != t) or (unseen and groups[c, d.G_FREE] < FREE_FRACTION):
                 continue
             distance = math.hypot(groups[c, d.G_X] - row[T_X], groups[c, d.G_Y] - row[T_Y])
             if distance < gate or (owner == t and distance < row[T_RADIUS]):
@@ -167,12 +171,12 @@ def hide(tracks, dt, now, space, keep):
 
 
 @njit(cache=True)
-def judge(tracks, now, space, config):
+def judge(tracks, now, space, fastest):
     """Decides which tracks move; returns those that have just been found to (bool per track).
 
-    A track moves once its motion is steady and faster than ``slowest`` beyond doubt, and either it lies
+    A track moves once its motion is steady and faster than REST_SPEED beyond doubt, and either it lies
     in space that was seen free before, or the place where it was first seen is seen free now. It
-    has stopped after ``rest_time`` below that speed.
+    has stopped after REST_TIME below that speed.
     """
     started = np.zeros(len(tracks), np.bool_)
     for t in range(len(tracks)):
@@ -180,17 +184,17 @@ def judge(tracks, now, space, config):
         if row[T_GROUP] < 0.0:
             continue
         speed = math.hypot(row[T_VX], row[T_VY])
-        if speed > config.fastest:  # two things taken for one
+        if speed > fastest:  # two things taken for one
             row[T_STATE] = LOST
         elif row[T_STATE] == CONFIRMED:
-            if speed > config.slowest:
+            if speed > REST_SPEED:
                 row[T_MOVED] = now
-            elif now - row[T_MOVED] > config.rest_time:
+            elif now - row[T_MOVED] > REST_TIME:
                 row[T_STATE] = STOPPED
                 row[T_X0], row[T_Y0] = row[T_X], row[T_Y]
-        elif speed > max(config.slowest, SURE * math.sqrt(row[T_VV])) and row[T_MISFIT] < FITS:
+        elif speed > max(REST_SPEED, SURE * math.sqrt(row[T_VV])) and row[T_MISFIT] < FITS:
             gone = math.hypot(row[T_X] - row[T_X0], row[T_Y] - row[T_Y0])
-            entered = row[T_STATE] == STOPPED or row[T_FREE] > config.free_fraction
+            entered = row[T_STATE] == STOPPED or row[T_FREE] > FREE_FRACTION
             left = row[T_ENDS] == 0.0 and row[T_FULL] > STEADY
             left = left and gone > max(row[T_RADIUS], d.TYPICAL_RADIUS)
             left = left and seen_free(row[T_X0], row[T_Y0], space)
