@@ -19,7 +19,7 @@ from scipy.ndimage import distance_transform_edt
 from dynastar import Lidar, OccupancyGrid, Pose2D
 from dynastar.clearance import distance_field, update_window
 from dynastar.perception import LocalMap, LocalMapConfig
-from dynastar.perception.local_map_kernels import scan_points
+from dynastar.perception.placed_scan import placed
 from dynastar.simulation.lidar import LidarSimulator
 
 N, SIDE, CELL, CAP, REPEATS = 1000, 200, 0.05, 2.0, 10
@@ -44,12 +44,11 @@ def local_map_times(occupied: np.ndarray) -> tuple[float, float]:
     middle = int(np.hypot(rows - N / 2, columns - N / 2).argmin())
     at = Pose2D((columns[middle] + 0.5) * CELL, (rows[middle] + 0.5) * CELL)
     scan = LidarSimulator(Lidar(720, math.tau, 0.05, 12.0), grid).scan(at, 1.0)
-    limits, beams = (scan.range_min, scan.range_max), (scan.angle_min, scan.angle_increment)
-    points, _ = scan_points(scan.ranges, limits, beams, tuple(at))
-    local_map = LocalMap(LocalMapConfig(CELL, SIDE * CELL))
+    view = placed(scan, at, (0.01, 0.0), 0.1)
+    local_map = LocalMap(LocalMapConfig(SIDE * CELL), CELL)
     local_map.follow(at.x, at.y)
-    local_map.see(scan, at, points, np.zeros(len(points), bool), 0.01, 0.0)
-    aside = 0.0
+    local_map.see(view, np.zeros(len(view.points), bool))
+    barred, aside = np.zeros((SIDE, SIDE), bool), 0.0
 
     def move_on() -> None:
         nonlocal aside
@@ -57,9 +56,9 @@ def local_map_times(occupied: np.ndarray) -> tuple[float, float]:
         before = local_map.column0
         local_map.follow(at.x + aside, at.y)
         assert local_map.column0 != before
-        local_map.update(1.0)
+        local_map.update(1.0, barred)
 
-    still, moved = least(lambda: local_map.update(1.0), move_on)
+    still, moved = least(lambda: local_map.update(1.0, barred), move_on)
     assert local_map.field.shape == (SIDE, SIDE)
     return still, moved
 

@@ -32,7 +32,7 @@ from dynastar.dwa import DwaConfig
 from dynastar.geometry import Twist
 from dynastar.planning import SearchGrid
 from dynastar.simulation.lidar import LidarSimulator
-from dynastar.simulation.warm_up import warm_up
+from dynastar.simulation.warming import warm_up
 
 Series = dict[str, list[tuple[float, float]]]  # by line: (x, ms)
 SIDES = 128, 256, 512, 1024, 2048, 4096
@@ -88,8 +88,8 @@ class Bench:
         self.navigator.set_goal(Goal(HALL - 1.0, CENTRE.y))
         self.movers, self.now = movers, 0.0
         self.took: dict[str, float] = {}
-        self._time(self.navigator.sensing, "take_in")
-        self._time(self.navigator.window, "choose")
+        self._time(self.navigator.sensing, "update")
+        self._time(self.navigator.driving.window, "choose")
 
     def tick(self) -> tuple[float, float]:
         """Milliseconds of the next tick: from the scan to the distance field, and of the choice."""
@@ -100,7 +100,7 @@ class Bench:
         scan = self.lidar.scan(CENTRE, self.now, discs)
         self.took.clear()
         self.navigator.command(RobotState(self.now, CENTRE, Twist(0.3, 0.0)), scan)
-        return self.took["take_in"], self.took["choose"]
+        return self.took["update"], self.took["choose"]
 
     def settled(self) -> tuple[float, float]:
         """Milliseconds of sensing and of the choice, the best, once every mover is tracked."""

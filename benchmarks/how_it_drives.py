@@ -2,7 +2,8 @@
 
 python benchmarks/how_it_drives.py [--out docs/media/how-it-drives.png]
 
-The tick is the one, with somebody walking near, with the most samples both admitted and refused.
+The tick is the one with the most samples both admitted and refused, and of several that with the
+nearest walker.
 """
 
 import argparse
@@ -18,47 +19,68 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from dynastar import Navigator, Twist, load_scenario
-from dynastar.dwa.motion import driven
-from dynastar.perception.prediction import SPEEDS, WEIGHTS
+from dynastar.perception.prediction import WEIGHTS
+from dynastar.robot import arc, slew
 from dynastar.simulation.run import drive
 
 ROOT = Path(__file__).parent.parent
 OFFICE = ROOT / "examples" / "office" / "office.toml"
-NAMES = ("goes on", "stops", "turns back")
+NAMES = ("continues", "stops", "turns back")
 COLOURS = ("tab:blue", "tab:orange", "tab:red")
+NEAR = 0.4  # m
 REASONS = ("", "tab:brown", "tab:red", "tab:purple")  # by code of refusal
 
 
 class Watched(Navigator):
     """A navigator that keeps what its most telling tick considered."""
 
-    best: tuple[int, dict[str, Any]] = (-1, {})
+    best: tuple[tuple[int, float], dict[str, Any]] = ((0, -math.inf), {})
 
-    def _scene(self, state: Any, pose: Any, movers: Any) -> Any:
-        self.seen = super()._scene(state, pose, movers), pose
-        return self.seen[0]
+    def retune(self, dwa: Any) -> None:
+        """As the navigator's; the scenes of its driving are kept."""
+        super().retune(dwa)
+        make = self.driving.scene
+
+        def scene(pose: Any, *others: Any) -> Any:
+            made = make(pose, *others)
+            assert self.driving.guide is not None
+            self.seen = made, pose, self.driving.guide.line
+            return made
+
+        self.driving.scene = scene  # type: ignore[method-assign]
 
     def command(self, state: Any, scan: Any, movers: Any = None) -> Twist:
         """Commands as ever, and keeps the tick if it tells more than those before."""
         twist = super().command(state, scan, movers)
         choice = self.status.choice
-        if choice is None:
+        walkers = [(t.x, t.y) for t in self.status.tracks if t.state == "confirmed"]
+        if choice is None or choice.command is None or not walkers or not self._on_path():
             return twist
-        walking = any(track.state == "confirmed" for track in self.status.tracks)
-        telling = walking * min((choice.refused == 0).sum(), (choice.refused > 0).sum())
+        nearest = min(math.dist(walker, state.pose[:2]) for walker in walkers)
+        refused = int((choice.refused > 0).sum())
+        telling = min(refused, len(choice.refused) - refused), -nearest
         if telling > Watched.best[0]:
             path = None if self.route.path is None else self.route.path.points
-            kept = copy.deepcopy((*self.seen, state, choice, self.guidance.line, path))
-            Watched.best = int(telling), {"tick": kept, "robot": self.robot}
+            scene, pose, line = self.seen
+            kept = copy.deepcopy((scene, pose, state, line, choice, path))
+            Watched.best = telling, {"tick": kept, "robot": self.robot}
         return twist
+
+    def _on_path(self) -> bool:
+        """Whether the line that is followed stays near the global path."""
+        path, (*_, line) = self.route.path, self.seen
+        if path is None:
+            return False
+        x, y = line[min(len(line) - 1, 20)].tolist()
+        return math.dist((x, y), path.at(path.project(x, y))) < NEAR
 
 
 def draw_scene(axes: Axes, scene: Any, pose: Any, line: Any, path: Any) -> None:
     """The cost-to-go, where it leads, and where moving obstacles are expected."""
-    field = scene.cost_to_go
-    n, a = len(field.value), field.resolution
+    field = scene.cost_to_go.value
+    n, a = len(field.values), field.resolution
     extent = (field.x0, field.x0 + n * a, field.y0, field.y0 + n * a)
-    value = np.where(np.isfinite(field.value), field.value, np.nan)
+    value = np.where(np.isfinite(field.values), field.values, np.nan)
     axes.imshow(value, origin="lower", extent=extent, cmap="viridis", alpha=0.6)
     centres = (np.arange(n) + 0.5) * a
     levels = np.arange(np.nanmin(value), np.nanmax(value), 0.25)
@@ -66,17 +88,35 @@ def draw_scene(axes: Axes, scene: Any, pose: Any, line: Any, path: Any) -> None:
     if path is not None:
         axes.plot(*path.T, "m--", lw=1.2, label="global path")
     axes.plot(*line.T, "c-", lw=2.0, label="descent of the cost-to-go")
-    people = scene.people
-    for m, person in enumerate(people.now):
-        axes.add_patch(Circle(person[:2], person[4], color="k", alpha=0.6))
-        for h in range(len(SPEEDS)):
-            for k in range(9, people.mean.shape[2], 10):
-                size = person[4] + people.spread[k]
-                ring = Circle(people.mean[m, h, k], size, fill=False, color=COLOURS[h], lw=0.8)
-                axes.add_patch(ring)
+    draw_obstacles(axes, scene)
+    for x, y, vx, vy, radius in scene.moving.obstacles.tolist():
+        for travel, colour in zip(scene.moving.travel[:, 9::10], COLOURS, strict=True):
+            for t, deviation in zip(travel, scene.moving.deviation[9::10], strict=True):
+                size, place = radius + deviation, (x + t * vx, y + t * vy)
+                axes.add_patch(Circle(place, size, fill=False, color=colour, lw=0.8))
     for h, name in enumerate(NAMES):
         axes.plot([], [], color=COLOURS[h], label=f"{name} ({WEIGHTS[h]:g})")
     axes.set_title("Predicted positions every second, grown by one standard deviation", fontsize=10)
+
+
+def draw_obstacles(axes: Axes, scene: Any) -> None:
+    """The moving obstacles where they are."""
+    for x, y, _, _, radius in scene.moving.obstacles.tolist():
+        axes.add_patch(Circle((x, y), radius, color="k", alpha=0.6))
+
+
+def held(pose: Any, twist: Any, sample: Any, limits: Any) -> list[tuple[float, float]]:
+    """Where a robot is every 0.1 s that holds a sample for 1.5 s."""
+    points = [pose[:2]]
+    for _ in range(15):
+        after = Twist(
+            slew(twist.v, sample[0], limits.v_accel, limits.v_brake, 0.1),
+            slew(twist.omega, sample[1], limits.omega_accel, limits.omega_brake, 0.1),
+        )
+        mean = Twist(0.5 * (twist.v + after.v), 0.5 * (twist.omega + after.omega))
+        pose, twist = arc(pose, mean, 0.1), after
+        points.append(pose[:2])
+    return points
 
 
 def draw_choice(axes: Axes, scene: Any, pose: Any, state: Any, choice: Any, robot: Any) -> None:
@@ -85,11 +125,6 @@ def draw_choice(axes: Axes, scene: Any, pose: Any, state: Any, choice: Any, robo
     low, high = np.quantile(scores, [0.1, 1.0])
     order = np.argsort(np.where(choice.refused > 0, -np.inf, choice.score))
     for i in order:
-        at = (pose.x, pose.y, math.cos(pose.theta), math.sin(pose.theta))
-        v, omega, points = *state.twist, [at[:2]]
-        for _ in range(15):
-            at, v, omega = driven(at, v, omega, *choice.samples[i], robot.limits, 0.1)
-            points.append(at[:2])
         code = int(choice.refused[i])
         style: dict[str, Any] = {"color": REASONS[code], "lw": 0.8, "alpha": 0.7}
         if code == 0:
@@ -97,14 +132,14 @@ def draw_choice(axes: Axes, scene: Any, pose: Any, state: Any, choice: Any, robo
             known = np.isfinite(choice.score[i])
             shade = colormaps["summer_r"](min(max(share, 0.0), 1.0)) if known else "0.6"
             style = {"color": shade, "lw": 1.0 if known else 0.6}
+        points = held(pose, state.twist, choice.samples[i], robot.limits)
         axes.plot(*np.array(points).T, **style)
     axes.plot([], [], color=REASONS[1], label="refused: no certified stop")
     axes.plot([], [], color=REASONS[2], label="refused: a moving obstacle")
     axes.plot([], [], color=REASONS[3], label="refused: unseen space")
-    axes.plot([], [], color="0.6", label="admissible, left early")
+    axes.plot([], [], color="0.6", label="admissible, touches an obstacle")
     axes.plot([], [], color=colormaps["summer_r"](0.9), label="admissible, by its score")
-    for person in scene.people.now:
-        axes.add_patch(Circle(person[:2], person[4], color="k", alpha=0.6))
+    draw_obstacles(axes, scene)
     axes.set_title("Refused and scored: samples, held for 1.5 s", fontsize=10)
 
 
@@ -114,18 +149,18 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=ROOT / "docs/media/how-it-drives.png")
     arguments = parser.parse_args()
     drive(load_scenario(OFFICE), navigator=Watched)
-    scene, pose, state, choice, line, path = Watched.best[1]["tick"]
+    scene, pose, state, line, choice, path = Watched.best[1]["tick"]
     robot = Watched.best[1]["robot"]
     figure = Figure(figsize=(11, 5.6), layout="constrained")
     left, right = figure.subplots(1, 2)
     draw_scene(left, scene, pose, line, path)
     draw_choice(right, scene, pose, state, choice, robot)
-    obstacles = scene.obstacles
-    n, a = len(obstacles.distance), obstacles.resolution
+    obstacles = scene.distance_to_obstacle
+    n, a = len(obstacles.values), obstacles.resolution
     extent = (obstacles.x0, obstacles.x0 + n * a, obstacles.y0, obstacles.y0 + n * a)
-    stands = np.where(obstacles.distance <= 0.0, 1.0, np.nan)
+    occupied = np.where(obstacles.values <= 0.0, 1.0, np.nan)
     for axes, half in ((left, 4.0), (right, 1.3)):
-        axes.imshow(stands, origin="lower", extent=extent, cmap="gray", vmin=0, vmax=2)
+        axes.imshow(occupied, origin="lower", extent=extent, cmap="gray", vmin=0, vmax=2)
         size = robot.footprint.inscribed
         axes.add_patch(Circle((pose.x, pose.y), size, fill=False, color="r", lw=1.5))
         ahead = pose.x + size * math.cos(pose.theta), pose.y + size * math.sin(pose.theta)

@@ -20,8 +20,9 @@ import numpy.typing as npt
 from dynastar.bench import paper
 from dynastar.bench.missions import Options
 from dynastar.navigator import Navigator
-from dynastar.navigator.planning_map import PlanningMap
+from dynastar.navigator.planners import Planners
 from dynastar.path import Path
+from dynastar.perception.planning_map import Patch
 from dynastar.planning import segment_clear
 from dynastar.simulation import Scenario
 
@@ -31,22 +32,22 @@ SEEN = 2  # points of a block that have to be seen
 Block = tuple[float, float, float]  # low corner (x, y) and side, m
 
 
-def map_of(scenario: Scenario) -> PlanningMap:
-    """The default preset's planning map for the paper's robot."""
-    return Navigator(scenario.grid, scenario.robot).planning_map
+def planners_of(scenario: Scenario) -> Planners:
+    """The default preset's planners for the paper's robot."""
+    return Navigator(scenario.grid, scenario.robot).planners
 
 
-def add(planning_map: PlanningMap, block: Block) -> None:
+def add(planners: Planners, block: Block) -> None:
     """Marks a block as seen."""
     x, y, side = block
+    planning_map = planners.planning_map
     rows, columns = np.indices(planning_map.prior.shape)
     frame = planning_map.frame
     at_x = frame.x + (columns + 0.5) * frame.resolution
     at_y = frame.y + (rows + 0.5) * frame.resolution
     mask = (at_x > x) & (at_x < x + side) & (at_y > y) & (at_y < y + side)
-    planning_map.seen |= mask
-    rows, columns = np.nonzero(mask)
-    planning_map._mark(rows.min(), rows.max() + 1, columns.min(), columns.max() + 1)
+    planning_map.blocked |= mask
+    planners.mark(Patch(0, 0, planning_map.blocked))
 
 
 def visible(scenario: Scenario, solid: npt.NDArray[np.bool_], at: Path, block: Block) -> bool:
@@ -76,27 +77,27 @@ def blocks_of(scenario: Scenario, side: float) -> list[Block]:
     return found
 
 
-def planned(planning_map: PlanningMap) -> Path:
+def planned(planners: Planners) -> Path:
     """The plan from start to goal."""
-    return planning_map.plan(paper.START, paper.GOAL, False).path
+    return planners.plan(paper.START, paper.GOAL, False).path
 
 
 def followed(scenario: Scenario, blocks: list[Block]) -> float:
     """Metres that a point drives until it is within the goal's tolerance."""
-    planning_map = map_of(scenario)
+    planners = planners_of(scenario)
     solid = np.kron(scenario.grid.occupied, np.ones((4, 4), bool))
     for x, y, side in blocks:
         row, column, n = round((y - 1) * 4), round((x - 1) * 4), round(side * 4)
         solid[row : row + n, column : column + n] = True
-    hidden, path, driven, length = list(blocks), planned(planning_map), 0.0, 0.0
+    hidden, path, driven, length = list(blocks), planned(planners), 0.0, 0.0
     here = paper.START
     while np.hypot(here[0] - paper.GOAL[0], here[1] - paper.GOAL[1]) > paper.TOLERANCE:
         found = [block for block in hidden if visible(scenario, solid, here, block)]
         for block in found:
             hidden.remove(block)
-            add(planning_map, block)
+            add(planners, block)
         if found:
-            path, driven = planning_map.plan(here, paper.GOAL, False).path, 0.0
+            path, driven = planners.plan(here, paper.GOAL, False).path, 0.0
         step = min(STEP, path.length - driven)
         driven, length = driven + step, length + step
         here = path.at(driven)
@@ -115,7 +116,7 @@ def main() -> None:
         scenario = paper.world(options.seed, number)
         assert isinstance(scenario, Scenario)
         whole, half = blocks_of(scenario, 1.0), blocks_of(scenario, 0.5)
-        known = map_of(scenario)
+        known = planners_of(scenario)
         first = planned(known).length - paper.TOLERANCE
         for block in whole:
             add(known, block)

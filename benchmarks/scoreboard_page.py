@@ -23,9 +23,9 @@ DOCS = Path(__file__).parent.parent / "docs"
 PAGE, PICTURES = DOCS / "benchmarks.md", DOCS / "media" / "benchmarks"
 CONTROLLERS, SUITES = ("pure_pursuit", "kompass_dwa"), ("barn", "dynabarn", "maps", "people")
 KINDS = {
-    "moving": "touched while it moves",
-    "resting": "touched at rest",
-    "no progress": 'says "no progress, whatever was tried"',
+    "moving": "contact while moving",
+    "resting": "contact while standing",
+    "no progress": 'says "gave up: no progress"',
     "no way": "says that no way is left or leads to the goal",
     "timeout": "the time is up",
 }
@@ -50,7 +50,7 @@ def kind_of(row: Row) -> str:
     if row["outcome"] == "contact":
         return "moving" if row["contacts_moving"] else "resting"
     if row["outcome"] == "blocked":
-        return "no progress" if row["reason"].startswith("no progress") else "no way"
+        return "no progress" if "no progress" in row["reason"] else "no way"
     return "timeout"
 
 

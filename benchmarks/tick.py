@@ -18,7 +18,7 @@ from dynastar import Goal, Navigator, OccupancyGrid, Robot, Scenario
 from dynastar.geometry import Twist
 from dynastar.robot import ROBOTS, Lidar
 from dynastar.simulation import Mover, run
-from dynastar.simulation.warm_up import warm_up
+from dynastar.simulation.warming import warm_up
 
 SAMPLES, WALKERS = 40, 5
 SQUARE = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])

@@ -6,8 +6,8 @@ is from the ranges to the command, warm and in turns. Samples are counted, and h
 collision checks. What is known and what is judged differs:
 
 - dynastar: all of ``Navigator.command``: local map of 10 x 10 m at 5 cm (hits, what beams passed, what
-  was never seen), tracker, distance fields, cost-to-go; a sample needs a certified stop, and is rolled
-  out until it cannot be the best any more, with nobody about for 2 s.
+  was never seen), tracker, distance fields, cost-to-go; a sample needs a certified stop, is rolled out
+  to the horizon, and is scored. Its steps are 0.1 s while it is held, then 0.2 s.
 - kompass-core: an octree of the scan's ends at 5 cm, collision check of the robot's cylinder with it at
   every step, distances to path, goal and obstacles for what is left; with the path's points as far apart
   as dynastar's, and 1 cm apart, which is its default.
@@ -46,7 +46,7 @@ from dynastar import LaserScan, Navigator, NavigatorConfig, OccupancyGrid, Robot
 from dynastar.dwa import DwaConfig
 from dynastar.robot import Lidar
 from dynastar.simulation.lidar import LidarSimulator
-from dynastar.simulation.warm_up import warm_up
+from dynastar.simulation.warming import warm_up
 
 BEAMS, ROUNDS = 360, 40
 
@@ -80,7 +80,7 @@ def ours(grid: OccupancyGrid, scan: LaserScan) -> Contender:
     choice = navigator.status.choice
     assert choice is not None
     samples = len(choice.samples), int((choice.refused == 0).sum())
-    return Contender(timed(command), *samples, navigator.window.span.value_steps)
+    return Contender(timed(command), *samples, len(navigator.driving.window.rules.schedule.step))
 
 
 def measure(contenders: dict[str, Contender]) -> dict[str, list[float]]:

@@ -1,4 +1,4 @@
-"""What all tests share: where the public data sets lie, and a real browser."""
+"""What all tests share: kernels that can be called, the public data sets, and a real browser."""
 
 import os
 import shutil
@@ -12,6 +12,7 @@ settings.register_profile("patient", deadline=None, suppress_health_check=[Healt
 settings.load_profile("patient")
 
 ROOT = Path(__file__).parents[1]
+os.environ["DYNASTAR_CALLABLE_KERNELS"] = "1"  # before dynastar is imported: tests call kernels
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:

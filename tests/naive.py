@@ -214,17 +214,19 @@ def straight_lines(clear, points):
     return length[len(points) - 1]
 
 
-def spare_of_rule(centres, footprint, margin, start, pose):
-    """Metres that a footprint at ``pose`` (x, y, cos, sin) keeps beyond what it has to, cell by cell.
+def slack_of_constraint(centres, footprint, margin, start, pose):
+    """Slack (m) of the clearance constraint of a footprint at ``pose`` (x, y, cos, sin), cell by cell.
 
-    It has to keep ``margin`` from each of ``centres`` (k, 2), or what it kept at ``start``.
+    The footprint keeps ``margin`` from each of ``centres`` (k, 2), or what it had at ``start``.
     """
+    gaps = footprint_gaps(centres, footprint, pose)
+    return float((gaps - np.minimum(margin, footprint_gaps(centres, footprint, start))).min())
 
-    def gaps(at):
-        x, y, cos, sin = at
-        if footprint.is_disc:
-            return np.maximum(np.hypot(*(centres - (x, y)).T) - footprint.circumscribed, 0.0)
-        placed = footprint.vertices @ np.array([[cos, sin], [-sin, cos]]) + (x, y)
-        return shapely.distance(shapely.Polygon(placed), shapely.points(centres))
 
-    return float((gaps(pose) - np.minimum(margin, gaps(start))).min())
+def footprint_gaps(centres, footprint, pose):
+    """Distances (m) from a footprint at ``pose`` (x, y, cos, sin) to points (k, 2), 0 inside."""
+    x, y, cos, sin = pose
+    if footprint.is_disc:
+        return np.maximum(np.hypot(*(centres - (x, y)).T) - footprint.circumscribed, 0.0)
+    placed = footprint.vertices @ np.array([[cos, sin], [-sin, cos]]) + (x, y)
+    return shapely.distance(shapely.Polygon(placed), shapely.points(centres))

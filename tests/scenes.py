@@ -1,27 +1,28 @@
-"""What a dynamic window is judged against, made by hand."""
-
-import math
+"""Scenes for a dynamic window, made by hand."""
 
 import numpy as np
 
-from dynastar.clearance import DistanceField, lower_bounds
-from dynastar.dwa import CostToGo, Scene
-from dynastar.dwa.cost_to_go import descend
-from dynastar.dwa.marching import extend, march, queue_for
+from dynastar.clearance import lower_bounds
+from dynastar.dwa import DwaConfig, Scene
+from dynastar.dwa.dwa import rules_of
+from dynastar.dwa.rollout import Start
 from dynastar.dwa.scene import AT_REST
+from dynastar.dwa.terms import most_progress
+from dynastar.field import Field
+from dynastar.guidance import CostToGo
+from dynastar.guidance.cost_to_go import find_descent
+from dynastar.guidance.marching import extend, march, queue_for
 from dynastar.perception import PredictionConfig
 from dynastar.perception.hidden import Hidden
 from dynastar.perception.prediction import predict
 
 CELL, SIDE = 0.05, 160  # 8 x 8 m, from (0, 0)
-NOBODY_HIDDEN = Hidden(
-    np.full((SIDE // 2, SIDE // 2), 9.0, np.float32), 0.0, 0.0, 0.1, 0.25, 0.0, 0.1
-)
-STEP, HORIZON = 0.1, 80
+PERIOD = 0.1  # s between commands
+STEP, STEPS = 0.1, 80  # s, of the prediction
 
 
 def empty():
-    """Which cells are closed where nothing is but the rim."""
+    """Mask of closed cells: the outermost ones."""
     closed = np.zeros((SIDE, SIDE), bool)
     closed[[0, -1]] = closed[:, [0, -1]] = True
     return closed
@@ -36,9 +37,14 @@ def boxed(*boxes):
     return closed
 
 
+def scattered(random, fraction=0.004):
+    """``empty`` and a random fraction of the other cells."""
+    return empty() | (random.random((SIDE, SIDE)) < fraction)
+
+
 def field_of(closed):
     """The distance field of closed cells."""
-    return DistanceField(lower_bounds((~closed).astype(np.uint8), CELL), 0.0, 0.0, CELL)
+    return Field(lower_bounds((~closed).astype(np.uint8), CELL), 0.0, 0.0, CELL)
 
 
 def centres_of(closed):
@@ -46,31 +52,61 @@ def centres_of(closed):
     return (np.argwhere(closed)[:, ::-1] + 0.5) * CELL
 
 
-def cost_to_go(closed, goal, radius):
-    """The cost-to-go to ``goal`` of a disc, without any soft cost."""
-    n = SIDE // 2
-    room = field_of(closed).distance.reshape(n, 2, n, 2).max(axis=(1, 3)) >= radius
-    value, filled, slope = np.empty((n, n)), np.empty((n, n)), np.empty((n, n, 2))
-    row, column = (int(metres / (2 * CELL)) for metres in goal[::-1])
+def cost_to_go_of(value, filled, resolution):
+    """A CostToGo from the values of a march, low corner at the origin."""
+    made = CostToGo(Field(value, 0.0, 0.0, resolution), filled, *np.empty((2, *value.shape)))
+    find_descent(made)
+    return made
+
+
+def cost_to_go_to(goal, closed, radius):
+    """The cost-to-go to ``goal`` (m) of a disc, at 1 a metre."""
+    n, a = SIDE // 2, 2 * CELL
+    room = field_of(closed).values.reshape(n, 2, n, 2).max(axis=(1, 3)) >= radius
+    value, filled = np.empty((n, n)), np.empty((n, n))
+    row, column = int(goal[1] / a), int(goal[0] / a)
     cost = np.where(room, 1.0, np.inf)
-    march(cost, 2 * CELL, (row, column, 0.0), (row, column), 99.0, value, queue_for(n * n))
-    extend(value, 2 * CELL, filled)
-    descend(value, filled, slope)
-    return CostToGo(value, filled, slope, 0.0, 0.0, 2 * CELL)
+    march(cost, a, (row, column, 0.0), (row, column), 99.0, value, queue_for(n * n))
+    extend(value, a, filled)
+    return cost_to_go_of(value, filled, a)
 
 
-def scene_of(closed, goal=(7.0, 4.0), movers=(), radius=0.3, margin=0.05, hidden=NOBODY_HIDDEN,
-             ahead=0.0, last=AT_REST, v_cap=9.0, path=None, sigma=0.0):  # fmt: skip
-    """A scene in which all that is closed is occupied, too."""
-    field = field_of(closed)
-    people = predict(movers, PredictionConfig(), (ahead, STEP, HORIZON))
-    to_go = cost_to_go(closed, goal, radius + margin)
-    return Scene(
-        field, field, to_go, people, hidden, margin, margin, ahead, last, v_cap,
-        field if path is None else path, sigma,
-    )  # fmt: skip
+def hidden_in(distance, speed):
+    """Unseen space with ``distance`` (80, 80) to possible bodies of radius 0.25 m."""
+    return Hidden(Field(np.asarray(distance, np.float32), 0.0, 0.0, 2 * CELL), 0.25, speed, 0.1)
 
 
-def state_of(x, y, theta, v=0.0, omega=0.0):
-    """A state as the kernels take it."""
-    return (x, y, math.cos(theta), math.sin(theta)), v, omega
+NOTHING_HIDDEN = hidden_in(np.full((SIDE // 2, SIDE // 2), 9.0), 0.0)
+
+
+def scene_of(closed, goal=(7.0, 4.0), moving=(), radius=0.3, margin=0.05, latency=0.0, **others):
+    """A scene in which all closed cells are occupied; ``others`` are more of its fields.
+
+    ``moving`` are moving obstacles, ``radius`` (m) is that for which the cost-to-go is computed.
+    """
+    distance = field_of(closed)
+    scene = Scene(
+        distance_to_unknown=distance,
+        distance_to_obstacle=distance,
+        distance_to_path=distance,
+        cost_to_go=cost_to_go_to(goal, closed, radius + margin),
+        moving=predict(moving, PredictionConfig(), (latency, STEP, STEPS)),
+        hidden=NOTHING_HIDDEN,
+        margin=margin,
+        margin_to_unknown=margin,
+        latency=latency,
+        last=AT_REST,
+        v_cap=9.0,
+        path_weight=0.0,
+    )
+    return scene._replace(**others)
+
+
+def rules_for(robot, config=DwaConfig()):
+    """The rules of a robot that is commanded every ``PERIOD``."""
+    return rules_of(robot, config, PERIOD)
+
+
+def start_of(rules, state, gap, cost_to_go):
+    """Where roll-outs begin, with ``gap`` (m) of clearance and ``cost_to_go`` (m) left."""
+    return Start(state, gap, cost_to_go, most_progress(rules, state.v, cost_to_go))

@@ -1,7 +1,9 @@
 import os
 import subprocess
 import sys
+from typing import NamedTuple
 
+import numpy as np
 import pytest
 
 from dynastar import compiled
@@ -57,6 +59,38 @@ def test_the_folder_is_named_after_the_sources_and_where_they_are(tmp_path, monk
     source.rename(other / "kernels.py")
     monkeypatch.setattr(compiled, "__file__", str(other / "compiled.py"))
     assert len({before, alone, edited, compiled.digest()}) == 4
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "from dynastar.compiled import inner\n\n@inner\n",
+        "class Body(NamedTuple):\n    radius: float\n",
+    ],
+)
+def test_the_folder_changes_with_inner_kernels_and_with_tuples_that_kernels_take(
+    text, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(compiled, "__file__", str(tmp_path / "compiled.py"))
+    source = tmp_path / "source.py"
+    digests = []
+    for written in (text, text + "# edited\n", "PLAIN = 1\n", "PLAIN = 2\n"):
+        source.write_text(written)
+        digests.append(compiled.digest())
+    assert len(set(digests[:3])) == 3
+    assert digests[2] == digests[3]  # no kernel depends on it
+
+
+def test_kernels_that_tests_can_call_have_a_folder_of_their_own(tmp_path, monkeypatch):
+    told = set()
+    for value in ("1", ""):
+        monkeypatch.setenv("DYNASTAR_CALLABLE_KERNELS", value)
+        told.add(run("from dynastar import compiled as c; print(c.folder())", tmp_path).stdout)
+    assert len(told) == 2
+    monkeypatch.setattr(compiled, "CALLABLE", not compiled.CALLABLE)
+    before = compiled.digest()
+    monkeypatch.setattr(compiled, "CALLABLE", not compiled.CALLABLE)
+    assert compiled.digest() != before
 
 
 def test_importing_dynastar_imports_nothing_heavy():
@@ -140,3 +174,14 @@ def test_the_command_line_works_for_a_user_without_a_name_and_a_home(tmp_path):
         assert (done.returncode, done.stdout[:7]) == (0, "planner"), done.stderr
         assert len(done.stderr.splitlines()) == lines, done.stderr
         assert ("no home can be written" in done.stderr) == (lines > 0)
+
+
+def test_a_record_has_the_fields_of_its_class():
+    class Fields(NamedTuple):
+        x: float
+        number: int
+        seen: bool
+
+    dtype = compiled.record(Fields)
+    assert dtype.names == Fields._fields
+    assert np.array([Fields(0.5, 2, True)], dtype).tolist() == [(0.5, 2, True)]

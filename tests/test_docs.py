@@ -12,6 +12,7 @@ from dynastar.bench import ablation, presets, table1, table1_tables, table3, tar
 from dynastar.bench.table1 import LARGE
 from dynastar.bench.tables import as_markdown
 from dynastar.cli import main
+from dynastar.navigator import NavigatorConfig
 
 ROOT = Path(__file__).parent.parent
 SOURCES = ROOT / "src" / "dynastar"
@@ -41,6 +42,35 @@ def test_each_function_beside_an_equation_is_in_the_file_that_is_named():
             assert re.search(rf"(def|class) {name}\b", text), f"{name} in {file}"
             named += 1
     assert named > 35
+
+
+@pytest.mark.parametrize("page", ["architecture.md", "how-it-drives.md"])
+def test_every_module_that_an_explanation_names_exists(page):
+    text = (ROOT / "docs" / page).read_text(encoding="utf-8")
+    modules = set(re.findall(r"`([\w/]+\.py)`", text))
+    assert len(modules) > 15
+    for module in modules:
+        assert any(SOURCES.rglob(module)) or (ROOT / module).exists(), module
+
+
+def settings_of(config, prefix=""):
+    """Full name of every setting of a table, those of nested tables included."""
+    for name, value in config._asdict().items():
+        if hasattr(value, "_asdict"):
+            yield from settings_of(value, f"{prefix}{name}.")
+        else:
+            yield prefix + name
+
+
+def test_the_guide_to_tuning_names_every_setting():
+    page = (ROOT / "docs" / "how-to" / "tune.md").read_text(encoding="utf-8")
+    table = page.partition("## Every setting")[2] + page.partition("## Trade")[0]
+    named = set()
+    for cell in re.findall(r"^\| (`[^|]+) \|", table, re.MULTILINE):
+        first, *others = re.findall(r"`([\w.]+)`", cell)
+        parent = first.rpartition(".")[0]
+        named |= {first, *others, *(f"{parent}.{other}" for other in others)}
+    assert set(settings_of(NavigatorConfig())) <= named
 
 
 def test_every_table_of_the_experiments_has_its_place_on_the_page():

@@ -122,7 +122,7 @@ def test_numbers_become_floats_so_that_no_kernel_is_compiled_again():
 def test_a_navigator_with_whole_numbers_compiles_nothing():
     from numba.core import event
 
-    from dynastar.simulation.warm_up import warm_up
+    from dynastar.simulation.warming import warm_up
 
     warm_up()
     listener = event.RecordingListener()

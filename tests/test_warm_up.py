@@ -1,4 +1,4 @@
-"""Nothing is compiled, nor read from the cache, once a navigator is there."""
+"""Nothing is compiled, nor read from the cache, after the warm-up."""
 
 import subprocess
 import sys
@@ -15,6 +15,7 @@ from numba.core import caching, event
 from dynastar.bench.missions import Options
 from dynastar.bench.selection import choose_missions
 from dynastar.bench.suites import load_suite
+from dynastar.simulation import warm_up
 from dynastar.simulation.run import drive
 
 compiled, loaded, driving = [], [], False
@@ -33,6 +34,7 @@ def load_overload(cache, *arguments):
 
 event.register("numba:compile", Compiled())
 caching.Cache.load_overload = load_overload
+warm_up()
 options = Options(data=Path(sys.argv[1]) if sys.argv[1] else None, missions=2)
 for name in sys.argv[2:]:
     suite = load_suite(name)

@@ -31,6 +31,7 @@ _WHERE = {
     "Episode": "episode",
     "Scenario": "simulation",
     "World": "simulation",
+    "warm_up": "simulation",
     "DynastarError": "errors",
     "InputError": "errors",
     "PlanningError": "errors",
@@ -81,6 +82,7 @@ if TYPE_CHECKING:  # what _WHERE has, for type checkers
     from dynastar.scan import LaserScan as LaserScan
     from dynastar.simulation import Scenario as Scenario
     from dynastar.simulation import World as World
+    from dynastar.simulation import warm_up as warm_up
 else:
 
     def __getattr__(name):

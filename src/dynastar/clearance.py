@@ -1,7 +1,6 @@
 """How far it is to what is blocked: distance fields in metres, and exact inflation."""
 
 import math
-from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -13,15 +12,6 @@ Field = npt.NDArray[np.float32]
 CHAMFER = 1.0 / 1.02  # the chamfer overestimates by less than 2 %
 WIDE = 24  # cells, up to which inflating by a mask is the faster way
 FAR = 1e9  # m, the clearance where nothing is blocked
-
-
-class DistanceField(NamedTuple):
-    """Metres from each cell's centre to the nearest marked cell's; low corner (x0, y0), resolution."""
-
-    distance: Field
-    x0: float
-    y0: float
-    resolution: float
 
 
 def distance_field(blocked: npt.ArrayLike, resolution: float) -> Field:

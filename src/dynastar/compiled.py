@@ -16,9 +16,11 @@ import stat
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
 
 ROOM = "dynastar"  # in the user's cache
+IN_KERNELS = b"njit", b"@inner", b"NamedTuple"  # in a source of kernels or of what they take
+CALLABLE = bool(os.environ.get("DYNASTAR_CALLABLE_KERNELS"))  # for tests: ``inner`` is ``njit``
 
 
 def caches() -> Path:
@@ -41,10 +43,10 @@ def digest() -> str:
     numba finds a kernel by the path of its source, so an installation cannot use another's.
     """
     package = Path(__file__).parent
-    found = hashlib.sha256(os.fsencode(package))
+    found = hashlib.sha256(os.fsencode(package) + bytes([CALLABLE]))
     for source in sorted(package.rglob("*.py")):
         text = source.read_bytes()
-        if b"njit" in text:
+        if any(word in text for word in IN_KERNELS):
             found.update(source.name.encode() + text)
     return found.hexdigest()[:16]
 
@@ -92,13 +94,24 @@ if not os.environ.get("NUMBA_CACHE_DIR"):
 
 import llvmlite.ir as ir  # noqa: E402 (numba reads the variable when it is imported)
 import numba  # noqa: E402
+import numpy as np  # noqa: E402
 from numba import config, types  # noqa: E402
 from numba.core.caching import IndexDataCacheFile  # noqa: E402
 from numba.extending import intrinsic  # noqa: E402
 
 config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
 
-__all__ = ["caches", "clear", "digest", "folder", "leading_zeros", "njit", "trailing_zeros"]
+__all__ = [
+    "caches",
+    "clear",
+    "digest",
+    "folder",
+    "inner",
+    "leading_zeros",
+    "njit",
+    "record",
+    "trailing_zeros",
+]
 
 DAMAGED = (EOFError, pickle.UnpicklingError, ValueError, TypeError, LookupError, AttributeError)
 
@@ -121,7 +134,11 @@ class _CacheFile(IndexDataCacheFile):  # type: ignore[misc]
 
 
 def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """numba's decorator of this name, with a cache that survives damaged files."""
+    """numba's decorator of this name, with a cache that survives damaged files.
+
+    Division follows IEEE 754, as NumPy's does: kernels that check for 0 take longer to compile.
+    """
+    options.setdefault("error_model", "numpy")
 
     def compiled(function: Callable[..., Any]) -> Any:
         kernel = numba.njit(**options)(function)
@@ -130,6 +147,22 @@ def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
         return kernel
 
     return compiled
+
+
+def inner(function: Callable[..., Any]) -> Any:
+    """Decorate a kernel that only other kernels call: it has no wrapper for Python.
+
+    Compiling takes about a fifth less time without the wrappers. Python code must not call such a
+    kernel: numba would crash. Tests set ``DYNASTAR_CALLABLE_KERNELS`` to call them all the same.
+    """
+    return njit(cache=True, no_cpython_wrapper=not CALLABLE, no_cfunc_wrapper=not CALLABLE)(
+        function
+    )
+
+
+def record(fields: type) -> np.dtype[Any]:
+    """The dtype of records with the annotated fields of a class; kernels read them as attributes."""
+    return np.dtype(list(get_type_hints(fields).items()))
 
 
 @intrinsic

@@ -21,5 +21,5 @@ def installed(extra: str) -> bool:
 def require(extra: str, what: str) -> None:
     """Raises MissingPackage, which calls what needs them ``what``, if an extra's packages are not there."""
     if not installed(extra):
-        packages = " and ".join(EXTRAS[extra])
+        packages = ", ".join(EXTRAS[extra])
         raise MissingPackage(f"{what} {packages}: pip install 'dynastar[{extra}]'")

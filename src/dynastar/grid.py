@@ -47,6 +47,12 @@ class GridFrame(NamedTuple):
         gy = -sin * offset[:, 0] + cos * offset[:, 1]
         return np.column_stack([gy, gx]) / self.resolution
 
+    def aligned(self) -> "GridFrame":
+        """This frame turned with the world about the world's origin so that the yaw is 0."""
+        cos, sin = math.cos(self.yaw), math.sin(self.yaw)
+        x, y = cos * self.x + sin * self.y, cos * self.y - sin * self.x
+        return GridFrame(self.resolution, x, y)
+
     def points_to_world(self, cells: npt.ArrayLike) -> npt.NDArray[np.float64]:
         """``to_world`` for an (n, 2) array of (row, column); returns (n, 2) of (x, y)."""
         at = np.asarray(cells, dtype=np.float64).reshape(-1, 2) * self.resolution

@@ -124,11 +124,11 @@ def test_what_limits_is_summed_by_cause(tmp_path):
         states=np.array(["following", "following", "following", "waiting", "arrived"]),
         limits=np.array(["", "curvature", "", "", ""]),
     )
-    expected = {"state: waiting": 1.0, "curvature": 0.5, "not named": 0.5}
+    expected = {"state: waiting": 1.0, "curvature": 0.5, "other": 0.5}
     assert driven.limited(few, 1.0) == expected
-    assert list(driven.limited(few, 1.0)) == ["state: waiting", "curvature", "not named"]
+    assert list(driven.limited(few, 1.0)) == ["state: waiting", "curvature", "other"]
     old = replace(few, limits=np.empty(0, np.str_))
-    assert driven.limited(old, 1.0) == {"not named": 1.0, "state: waiting": 1.0}
+    assert driven.limited(old, 1.0) == {"other": 1.0, "state: waiting": 1.0}
 
 
 def test_an_unknown_controller_is_a_row_with_the_reason():

@@ -7,15 +7,18 @@ from hypothesis import strategies as st
 
 from dynastar.dwa import body_of
 from dynastar.dwa.clearance import (
+    EXACT_WITHIN,
     body_distance,
+    clearance_slack,
     distance_at,
     kept_margin,
+    least_clearance,
     polygon_distance,
-    spare,
 )
+from dynastar.dwa.motion import Pose
 from dynastar.robot import ROBOTS, Footprint, Robot
-from naive import spare_of_rule
-from scenes import CELL, boxed, centres_of, empty, field_of
+from naive import footprint_gaps, slack_of_constraint
+from scenes import CELL, boxed, centres_of, empty, field_of, scattered
 
 FOOTPRINTS = {
     "disc": Footprint.disc(0.3),
@@ -31,11 +34,7 @@ def body(name):
 
 
 def at(x, y, theta=0.0):
-    return x, y, math.cos(theta), math.sin(theta)
-
-
-def scattered(random, share=0.004):
-    return empty() | (random.random(empty().shape) < share)
+    return Pose(x, y, math.cos(theta), math.sin(theta))
 
 
 @given(st.integers(0, 10**6))
@@ -72,33 +71,49 @@ def test_the_distance_to_a_footprint(name, x, y, theta):
 
 @given(footprints, st.integers(0, 10**6))
 @settings(max_examples=60, deadline=None)
-def test_what_is_to_spare_is_what_the_rule_says_cell_by_cell(name, seed):
+def test_the_least_clearance_is_that_to_the_nearest_cell_where_it_is_small(name, seed):
+    random = np.random.default_rng(seed)
+    closed = scattered(random, random.choice([0.0005, 0.004]))
+    field, centres, shape = field_of(closed), centres_of(closed), body(name)
+    pose = at(*random.uniform(0.5, 7.5, 2), random.uniform(-4, 4))
+    found = least_clearance(field, shape, pose)
+    true = footprint_gaps(centres, FOOTPRINTS[name], pose).min()
+    if distance_at(field, pose.x, pose.y) - shape.circumscribed > EXACT_WITHIN:
+        assert found <= true + 1e-6
+    elif true > 0.0:
+        between = 0.13  # m, half of the largest distance between two probes
+        assert true - CELL <= found <= true + (0.0 if name == "disc" else between) + 1e-6
+
+
+@given(footprints, st.integers(0, 10**6))
+@settings(max_examples=60, deadline=None)
+def test_the_slack_is_that_of_the_constraint_cell_by_cell(name, seed):
     random = np.random.default_rng(seed)
     closed = scattered(random, random.choice([0.0005, 0.004, 0.03]))
     field, centres = field_of(closed), centres_of(closed)
     start = at(*random.uniform(0.3, 7.7, 2), random.uniform(-4, 4))
     for _ in range(6):
-        pose = at(*random.normal(start[:2], 0.15), random.uniform(-4, 4))
-        found = spare(field, body(name), MARGIN, start, pose)
-        true = spare_of_rule(centres, FOOTPRINTS[name], MARGIN, start, pose)
+        pose = at(*random.normal((start.x, start.y), 0.15), random.uniform(-4, 4))
+        found = clearance_slack(field, body(name), MARGIN, start, pose)
+        true = slack_of_constraint(centres, FOOTPRINTS[name], MARGIN, start, pose)
         assert (found < -1e-6) == (true < -1e-6)
         assert found >= true - 1e-6 if true < 0.0 else found <= true + 1e-5
         if 0.0 <= true < CELL and found < CELL - 1e-9:  # near zero it is exact
-            near = distance_at(field, *pose[:2]) - body(name).circumscribed
+            near = distance_at(field, pose.x, pose.y) - body(name).circumscribed
             assert found == pytest.approx(true, abs=1e-6) or near >= MARGIN
 
 
 @pytest.mark.parametrize("name", sorted(FOOTPRINTS))
-def test_what_was_nearer_at_the_start_may_stay_as_near_but_not_come_nearer(name):
+def test_a_cell_that_was_nearer_at_the_start_may_stay_as_near_but_not_come_nearer(name):
     front = 0.3 if name == "disc" else FOOTPRINTS[name].vertices[:, 0].max()
     closed = boxed((4.0, 3.9, 4.05, 4.1))  # its centres are at x = 4.025
     start = at(4.025 - front - 0.03, 4.0)
     field = field_of(closed)
-    assert spare(field, body(name), MARGIN, start, start) == pytest.approx(0.0, abs=1e-5)
-    assert spare(field, body(name), MARGIN, start, at(start[0] - 0.01, 4.0)) >= 0.0
-    assert spare(field, body(name), MARGIN, start, at(start[0] + 0.01, 4.0)) < -0.005
-    far = at(start[0] - 0.5, 4.0)  # who starts away from it keeps the whole margin
-    assert spare(field, body(name), MARGIN, far, start) == pytest.approx(-0.03, abs=0.01)
+    assert clearance_slack(field, body(name), MARGIN, start, start) == pytest.approx(0.0, abs=1e-5)
+    assert clearance_slack(field, body(name), MARGIN, start, at(start.x - 0.01, 4.0)) >= 0.0
+    assert clearance_slack(field, body(name), MARGIN, start, at(start.x + 0.01, 4.0)) < -0.005
+    far = at(start.x - 0.5, 4.0)  # from farther away the whole margin counts
+    assert clearance_slack(field, body(name), MARGIN, far, start) == pytest.approx(-0.03, abs=0.01)
 
 
 @pytest.mark.parametrize("name", sorted(FOOTPRINTS))
@@ -106,14 +121,16 @@ def test_a_closed_cell_inside_the_footprint_does_not_void_the_check_of_others(na
     closed = boxed((4.0, 4.0, 4.05, 4.05), (4.8, 3.0, 4.9, 5.0))
     start = at(4.0, 4.0)
     field = field_of(closed)
-    assert spare(field, body(name), MARGIN, start, start) == 0.0
-    assert spare(field, body(name), MARGIN, start, at(4.05, 4.0)) == 0.0
-    assert spare(field, body(name), MARGIN, start, at(4.6, 4.0)) < -1e-3
+    assert clearance_slack(field, body(name), MARGIN, start, start) == 0.0
+    assert clearance_slack(field, body(name), MARGIN, start, at(4.05, 4.0)) == 0.0
+    assert clearance_slack(field, body(name), MARGIN, start, at(4.6, 4.0)) < -1e-3
 
 
-def test_what_lies_outside_the_field_counts_as_closed():
+def test_space_outside_the_field_counts_as_closed():
     assert distance_at(field_of(empty()), -1.0, 4.0) == 0.0
-    assert spare(field_of(empty()), body("disc"), MARGIN, at(4.0, 4.0), at(0.2, 4.0)) < 0.0
+    assert (
+        clearance_slack(field_of(empty()), body("disc"), MARGIN, at(4.0, 4.0), at(0.2, 4.0)) < 0.0
+    )
 
 
 @given(footprints, st.floats(0.0, 0.3), st.floats(0.0, 0.3))

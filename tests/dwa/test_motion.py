@@ -6,10 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dynastar import robot
-from dynastar.dwa.motion import coast, driven, moved, slew
+from dynastar.dwa.motion import Pose, State, coast, driven, moved, slew, state_at, stopping_time
+from dynastar.geometry import Twist
 from dynastar.robot import Limits
 
-START = (0.3, -0.2, math.cos(0.7), math.sin(0.7))
+START = Pose(0.3, -0.2, math.cos(0.7), math.sin(0.7))
 rates = st.floats(0.1, 5.0)
 limits_ = st.builds(
     Limits, st.just(2.0), st.just(2.0), rates, rates, rates, rates, v_min=st.just(-1.0)
@@ -18,13 +19,12 @@ limits_ = st.builds(
 
 def euler(pose, v, omega, duration, steps=20000):
     """Eq. 4 step by step: x += v cos(theta) h, y += v sin(theta) h, theta += omega h."""
-    x, y, cos, sin = pose
     h = duration / steps
-    theta = math.atan2(sin, cos) + omega * h * (np.arange(steps) + 0.5)
-    end = math.atan2(sin, cos) + omega * duration
+    theta = math.atan2(pose.sin, pose.cos) + omega * h * (np.arange(steps) + 0.5)
+    end = math.atan2(pose.sin, pose.cos) + omega * duration
     return (
-        x + v * h * np.cos(theta).sum(),
-        y + v * h * np.sin(theta).sum(),
+        pose.x + v * h * np.cos(theta).sum(),
+        pose.y + v * h * np.sin(theta).sum(),
         math.cos(end),
         math.sin(end),
     )
@@ -35,7 +35,7 @@ def euler(pose, v, omega, duration, steps=20000):
 def test_an_arc_is_what_equation_4_adds_up_to(v, omega, duration):
     found = moved(START, v * duration, omega * duration)
     assert found == pytest.approx(euler(START, v, omega, duration), abs=1e-6)
-    assert math.hypot(found[2], found[3]) == pytest.approx(1.0)
+    assert math.hypot(found.cos, found.sin) == pytest.approx(1.0)
 
 
 @given(st.floats(-2, 2), st.floats(-2, 2), rates, rates, st.floats(0.0, 2.0))
@@ -49,14 +49,20 @@ def test_speeds_ramp_as_the_robots_do(current, wanted, accel, brake, duration):
         assert abs(found) - abs(current) <= accel * duration + 1e-9
 
 
+@given(limits_, st.floats(-1, 1), st.floats(-1, 1))
+@settings(deadline=None)
+def test_a_stop_takes_as_long_as_the_robots(limits, v, omega):
+    assert stopping_time(v, omega, limits) == robot.stopping_time(Twist(v, omega), limits)
+
+
 @given(limits_, *[st.floats(-1, 1)] * 4, st.floats(0.01, 0.2))
 @settings(deadline=None)
 def test_a_period_is_driven_at_the_mean_of_its_ends(limits, v, omega, to_v, to_omega, duration):
-    after, v1, w1 = driven(START, v, omega, to_v, to_omega, limits, duration)
-    assert v1 == slew(v, to_v, limits.v_accel, limits.v_brake, duration)
-    assert w1 == slew(omega, to_omega, limits.omega_accel, limits.omega_brake, duration)
-    mean = 0.5 * (v + v1), 0.5 * (omega + w1)
-    assert after == pytest.approx(euler(START, *mean, duration), abs=1e-6)
+    after = driven(State(START, v, omega), to_v, to_omega, limits, duration)
+    assert after.v == slew(v, to_v, limits.v_accel, limits.v_brake, duration)
+    assert after.omega == slew(omega, to_omega, limits.omega_accel, limits.omega_brake, duration)
+    mean = 0.5 * (v + after.v), 0.5 * (omega + after.omega)
+    assert after.pose == pytest.approx(euler(START, *mean, duration), abs=1e-6)
 
 
 @given(limits_, st.floats(-1, 1), st.floats(-1, 1), st.integers(0, 10**6))
@@ -64,18 +70,22 @@ def test_a_period_is_driven_at_the_mean_of_its_ends(limits, v, omega, to_v, to_o
 def test_commands_under_way_take_the_robot_where_the_drive_does(limits, v, omega, seed):
     random = np.random.default_rng(seed)
     commands, durations = random.uniform(-1, 1, (3, 2)), random.uniform(0.0, 0.1, 3)
-    x, y, theta, v1, w1 = coast((0.3, -0.2, 9.0), (v, omega), commands, durations, limits)
-    at_x, at_y, turned = 0.3, -0.2, 9.0
+    theta = 9.0
+    after, turned = coast(state_at(0.3, -0.2, theta, v, omega), commands, durations, limits)
+    x, y = 0.3, -0.2
     for command, duration in zip(commands, durations, strict=True):
         h = duration / 400
         for _ in range(400):
             before = v, omega
             v = robot.slew(v, command[0], limits.v_accel, limits.v_brake, h)
             omega = robot.slew(omega, command[1], limits.omega_accel, limits.omega_brake, h)
-            middle = turned + 0.25 * (before[1] + omega) * h
-            at_x += 0.5 * (before[0] + v) * h * math.cos(middle)
-            at_y += 0.5 * (before[0] + v) * h * math.sin(middle)
-            turned += 0.5 * (before[1] + omega) * h
-    assert (v1, w1) == pytest.approx((v, omega), abs=1e-6)
+            middle = theta + 0.25 * (before[1] + omega) * h
+            x += 0.5 * (before[0] + v) * h * math.cos(middle)
+            y += 0.5 * (before[0] + v) * h * math.sin(middle)
+            theta += 0.5 * (before[1] + omega) * h
+    assert (after.v, after.omega) == pytest.approx((v, omega), abs=1e-6)
     # A ramp that ends within a quarter of a command is driven at the mean of its ends.
-    assert (x, y, theta) == pytest.approx((at_x, at_y, turned), abs=2e-3)
+    assert (after.pose.x, after.pose.y, 9.0 + turned) == pytest.approx((x, y, theta), abs=2e-3)
+    assert (after.pose.cos, after.pose.sin) == pytest.approx(
+        (math.cos(9.0 + turned), math.sin(9.0 + turned))
+    )

@@ -9,16 +9,15 @@ from dynastar.navigator.config import CELLS, NavigatorConfig, fitted
 def test_small_robots_get_smaller_cells_and_as_many(inscribed, share):
     config = NavigatorConfig()
     got = fitted(config, inscribed)
-    assert got.local_map.resolution == pytest.approx(share * config.local_map.resolution)
-    assert got.local_map.size / got.local_map.resolution == pytest.approx(
-        config.local_map.size / config.local_map.resolution
-    )
-    assert got.planning_resolution <= max(inscribed / CELLS, 0.5 * config.local_map.resolution)
-    assert fitted(got, inscribed).local_map.resolution <= got.local_map.resolution
+    assert got.resolution == pytest.approx(share * config.resolution)
+    assert got.resolution <= max(inscribed / CELLS, 0.5 * config.resolution)
+    cells = config.local_map.size / config.resolution
+    assert got.local_map.size / got.resolution == pytest.approx(cells)
+    assert fitted(got, inscribed).resolution <= got.resolution
 
 
 def test_nothing_but_the_cells_is_changed():
     config = NavigatorConfig(latency=0.1)
-    cells = config.local_map, config.planning_resolution
-    got = fitted(config, 0.1)._replace(local_map=cells[0], planning_resolution=cells[1])
+    cells = {"local_map": config.local_map, "resolution": config.resolution}
+    got = fitted(config, 0.1)._replace(**cells)
     assert got == config

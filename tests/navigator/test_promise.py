@@ -142,11 +142,10 @@ def random_settings(random, robot, narrowest):
     return {
         "period": random.uniform(0.05, 0.2),
         "hidden_speed": float(random.choice([0.0, random.uniform(0.0, 1.0)])),
-        "planning_resolution": random.uniform(0.05, 0.3),
+        "resolution": random.uniform(0.04, 0.12),
         "comfort": random.uniform(0.0, 0.3),
         "stuck_time": random.uniform(0.5, 4.0),
         "local_map": {
-            "resolution": random.uniform(0.04, 0.12),
             "size": random.uniform(6.0, 9.0),
             "memory": random.uniform(1.0, 30.0),
             "narrowest": narrowest,
@@ -189,7 +188,7 @@ def random_mission(random, grid, robot, noise, settings):
 
     start = somewhere(radius + random.uniform(0.03, 0.2))
     goal = max((somewhere(radius + 0.15) for _ in range(2)), key=lambda at: _gap(start, at))
-    bare = radius + robot.lidar.range_min + 2.0 * local_map["resolution"] + 2.0 * noise.pose_bound
+    bare = radius + robot.lidar.range_min + 2.0 * settings["resolution"] + 2.0 * noise.pose_bound
     obstacles = []
     for _ in range(random.integers(0, 9)):
         at = np.array(somewhere(0.0)[:2])

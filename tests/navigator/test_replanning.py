@@ -127,9 +127,9 @@ def test_a_new_goal_ends_the_manoeuvre_for_the_last():
     drive = Drive(room())
     drive.navigator.set_goal(Goal(6.5, 3.0))
     drive.for_seconds(1.0)
-    assert drive.navigator._last.v > 0.0
+    assert drive.navigator.driving._last.v > 0.0
     drive.navigator.set_goal(Goal(1.5, 1.5))
-    assert drive.navigator._last == AT_REST
+    assert drive.navigator.driving._last == AT_REST
 
 
 def test_what_is_blocked_is_still_so_after_data_were_missing():

@@ -38,6 +38,6 @@ def test_forgetting_frees_nothing():
 def test_a_start_at_the_edge_of_the_map_takes_nothing_beyond_it_as_free():
     _, tick = blind_behind((0.25, 4.0, 0.0))
     local_map = tick(0.0, 0.25)
-    x = local_map.origin[0] + (np.arange(len(local_map.open)) + 0.5) * local_map.config.resolution
+    x = local_map.origin[0] + (np.arange(len(local_map.open)) + 0.5) * local_map.resolution
     assert local_map.open[:, x > 0.0].any()
     assert not local_map.open[:, x < 0.0].any()

@@ -7,6 +7,7 @@ import pytest
 
 from driving import LIMITS, PERIOD, REST, Drive, room, under_way, with_ranges
 from dynastar.geometry import Goal, Pose2D
+from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.navigator import RobotState
 from dynastar.robot import Lidar, arc, stopping_time
 from dynastar.simulation.lidar import LidarSimulator
@@ -137,7 +138,7 @@ def test_front_and_rear_lidar_see_together_what_neither_sees_alone():
     x0, y0 = local_map.origin
 
     def state(x, y):
-        a = local_map.config.resolution
+        a = local_map.resolution
         return local_map.states[int((y - y0) / a), int((x - x0) / a)]
 
     assert state(drive.pose.x + 0.8, drive.pose.y) == state(drive.pose.x - 1.5, drive.pose.y) == 1
@@ -193,3 +194,33 @@ def test_one_pose_far_off_the_map_ends_nothing(far):
     assert 0.0 <= command.v <= drive.twist.v
     drive.carry_out(command)
     assert "arrived" in drive.until("arrived")
+
+
+@pytest.mark.parametrize(("corner", "same"), [(-0.3, True), (-0.32, False)])
+def test_another_map_keeps_what_was_seen(corner, same):
+    """The map has grown by three cells on two sides; the second lies on other cells."""
+    drive = Drive(room(), true=room(8.0, 6.0, (4.0, 4.0, 4.5, 4.5)), pose=(4.0, 3.0, 0.0))
+    drive.tick()
+    before = drive.navigator.sensing.local_map
+    larger = np.pad(room().values, ((3, 0), (3, 0)), constant_values=100)
+    drive.navigator.set_map(OccupancyGrid(larger, GridFrame(0.1, corner, corner)))
+    after, planning_map = drive.navigator.sensing.local_map, drive.navigator.planning_map
+    assert (after is before) == same
+    for kept, stamps in ((after.free_at, before.free_at), (after.hit_at, before.hit_at)):
+        assert (kept >= 0.0).sum() == pytest.approx((stamps >= 0.0).sum(), rel=0.1)
+    after.update(0.1, np.zeros(after.states.shape, bool))
+    assert planning_map.merge(after) is not None
+    cells = np.column_stack(np.nonzero(planning_map.seen))
+    at = planning_map.frame.points_to_world(cells + 0.5)
+    assert (np.abs(at - (4.25, 4.0)).max(axis=1) < 0.35).sum() >= 8  # the side in sight
+
+
+def test_a_map_of_other_cells_has_a_local_map_on_them():
+    drive = Drive(room(), pose=(4.0, 3.0, 0.0))
+    drive.navigator.set_goal(Goal(6.5, 3.0))
+    drive.for_seconds(0.5)
+    margin, values = drive.navigator.margin, room().refined(5).values
+    drive.navigator.set_map(OccupancyGrid(values[::2, ::2], GridFrame(0.04)))
+    assert drive.navigator.sensing.local_map.resolution == pytest.approx(0.04)
+    assert drive.navigator.margin == pytest.approx(margin - 0.01 / math.sqrt(2.0))
+    drive.until("arrived")

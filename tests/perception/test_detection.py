@@ -4,15 +4,18 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numba import njit
 
 from dynastar.grid import GridFrame
 from dynastar.perception import detection as d
-from dynastar.perception.detection import Known, Sensor
-from dynastar.perception.past_scans import SeenFree
+from dynastar.perception.detection import FIRST, LAST, NEITHER, UNOWNED, Known
+from dynastar.perception.past_scans import SENSOR, SeenFree
+from dynastar.perception.placed_scan import PlacedScan, Sensor
+from dynastar.perception.tracking_kernels import TRACK
 
 STEP = 0.005
-HERE = Sensor(0.0, 0.0, STEP, 1257, 1)
-NO_DISCS = np.empty((0, 5))
+HERE = Sensor(1.0, 0.0, 0.0, 0.0, 0.0, STEP, 1257, True)
+NO_TRACKS = np.zeros(0, TRACK)
 NOTHING = Known(np.zeros((1, 1), bool), GridFrame(1.0, 1000.0, 1000.0))
 
 
@@ -26,11 +29,19 @@ def disc_points(distance, radius, low=-math.inf, high=math.inf):
     return np.column_stack([ranges * np.cos(angles), ranges * np.sin(angles)])
 
 
-def group_of(points, hidden_first=0.0, hidden_last=0.0):
-    group = np.zeros(d.GROUP_COLUMNS)
-    group[d.G_STOP] = len(points)
-    group[d.G_HIDDEN_FIRST], group[d.G_HIDDEN_LAST] = hidden_first, hidden_last
-    return group
+def fitted(ends, radius, hidden=NEITHER):
+    """The disc that fits a group of all the points."""
+    points, (group,) = np.zeros(len(ends), d.POINT), np.zeros(1, d.GROUP)
+    points["x"], points["y"] = ends.T
+    points["range"] = np.hypot(*ends.T)
+    group["stop"] = len(ends)
+    group["hidden"] = hidden
+    return fit(points, group, HERE, radius)
+
+
+@njit
+def fit(points, group, sensor, radius):
+    return d.fit_disc(points, group, sensor, radius)
 
 
 def space(free):
@@ -39,8 +50,7 @@ def space(free):
     along = np.arange(0.0, 6.0, 0.01)
     shown = free(np.cos(angles)[:, None] * along, np.sin(angles)[:, None] * along)
     ranges = along[np.where(shown.all(axis=1), -1, np.argmin(shown, axis=1))]
-    views = np.array([[0.0, 0.0, 0.0, 0.0, STEP, 1257.0]])
-    return SeenFree(ranges[None, :], views, np.array([1.0]), 0.0)
+    return SeenFree(np.array([HERE], SENSOR), ranges[None, :])
 
 
 def everywhere(x, y):
@@ -51,12 +61,15 @@ def nowhere(x, y):
     return ~everywhere(x, y)
 
 
-def groups_of(points, free=everywhere, known=NOTHING, discs=NO_DISCS):
+def groups_of(points, free=everywhere, known=NOTHING, tracks=NO_TRACKS):
+    """Groups of points in any order; their indices are in the order of the angles."""
     angles = np.arctan2(points[:, 1], points[:, 0])
     order = np.argsort(angles)
-    points, beams = points[order], np.round((angles[order] + math.pi) / STEP).astype(np.int64)
-    owned = d.find_owners(points, HERE, known, space(free), discs)
-    return points, d.find_groups(points, beams, HERE, owned, discs, 1.4)
+    beams = np.round((angles[order] + math.pi) / STEP).astype(np.int64)
+    scan = PlacedScan(HERE, np.zeros(HERE.beams), points[order], beams)
+    groups, found = d.find_groups(d.points_of(scan), HERE, known, space(free), tracks, 1.4)
+    assert sorted(found["beam"]) == beams.tolist()
+    return groups
 
 
 @given(st.floats(0.1, 1.0), st.floats(0.05, 0.7))
@@ -64,7 +77,7 @@ def groups_of(points, free=everywhere, known=NOTHING, discs=NO_DISCS):
 def test_a_disc_in_full_view_is_found_with_its_radius(radius, sin):
     distance = radius / sin
     points = disc_points(distance, radius)
-    x, y, seen = d.fit_disc(points, group_of(points), HERE, 0.0)
+    x, y, seen = fitted(points, 0.0)
     error = 0.03 * radius + 2.0 * STEP * distance
     assert (x, y, seen) == pytest.approx((distance, 0.0, radius), abs=error)
 
@@ -79,8 +92,7 @@ def test_a_disc_of_known_radius_is_found_by_one_of_its_ends(gap, radius, shown, 
         return
     if mirrored:  # the last end is the hidden one
         points = (points * (1.0, -1.0))[::-1].copy()
-    group = group_of(points, float(not mirrored), float(mirrored))
-    x, y, _ = d.fit_disc(points, group, HERE, radius)
+    x, y, _ = fitted(points, radius, LAST if mirrored else FIRST)
     assert math.hypot(x - distance, y) < 0.06 * radius + 2.0 * STEP * distance
 
 
@@ -91,7 +103,7 @@ def test_groups_break_where_neighbours_are_far_apart(arcs):
     ranges = np.concatenate([np.full(count, r) for r, count in arcs])
     angles = -3.0 + np.arange(len(ranges)) * STEP
     points = np.column_stack([ranges * np.cos(angles), ranges * np.sin(angles)])
-    found_points, found = groups_of(points)
+    found = groups_of(points)
     expected, group = [], [0]
     for i in range(1, len(points)):
         if math.dist(points[i], points[i - 1]) > 0.2 + 2.0 * ranges[i] * STEP:
@@ -105,8 +117,7 @@ def test_groups_break_where_neighbours_are_far_apart(arcs):
             (g[0], g[-1] + 1) for g in expected if math.dist(points[g[0]], points[g[-1]]) < width
         }
 
-    got = {(int(g[d.G_START]), int(g[d.G_STOP])) for g in found if g[d.G_RADIUS] < 0.6}
-    assert len(found_points) == len(points)
+    got = {(int(g["start"]), int(g["stop"])) for g in found if g["radius"] < 0.6}
     assert {g for g in spans(0.5) if g[1] - g[0] >= d.FEWEST} <= got <= spans(1.4)
 
 
@@ -116,54 +127,56 @@ def test_ends_are_hidden_behind_what_is_nearer():
         [[math.cos(0.12), math.sin(0.12)], [-math.sin(0.12), math.cos(0.12)]]
     )
     hidden = np.arctan2(far[:, 1], far[:, 0]) > np.arctan2(near[:, 1], near[:, 0]).min()
-    _, found = groups_of(np.vstack([far[~hidden], near]))
-    first, last = found[np.argsort(found[:, d.G_X])[::-1]]
-    assert (first[d.G_HIDDEN_FIRST], first[d.G_HIDDEN_LAST]) == (0.0, 1.0)
-    assert (last[d.G_HIDDEN_FIRST], last[d.G_HIDDEN_LAST]) == (0.0, 0.0)
-    assert (first[d.G_X], first[d.G_Y]) == pytest.approx((4.0, 0.0), abs=0.04)
+    found = groups_of(np.vstack([far[~hidden], near]))
+    last, first = np.sort(found, order="x")
+    assert (first["hidden"], last["hidden"]) == (LAST, NEITHER)
+    assert (first["x"], first["y"]) == pytest.approx((4.0, 0.0), abs=0.04)
 
 
 def test_points_at_what_the_map_shows_are_in_no_group():
     mapped = np.zeros((20, 20), bool)
     mapped[:, 10:] = True  # x from 0 on
     known = Known(mapped, GridFrame(1.0, -10.0, -10.0))
-    assert len(groups_of(disc_points(2.0, 0.3))[1]) == 1
-    assert len(groups_of(disc_points(2.0, 0.3), known=known)[1]) == 0
+    assert len(groups_of(disc_points(2.0, 0.3))) == 1
+    assert len(groups_of(disc_points(2.0, 0.3), known=known)) == 0
 
 
 def test_free_space_is_what_lies_behind_a_point():
     """A wall is not in free space, though noise may have let a beam pass its surface."""
     y = np.linspace(-0.4, 0.4, 60)
     wall = np.column_stack([np.full(60, 2.02), y])
-    (group,) = groups_of(wall, free=lambda x, y: (x < 2.05) & (y == y))[1]
-    assert group[d.G_FREE] == 0.0
-    (group,) = groups_of(wall)[1]
-    assert group[d.G_FREE] == 1.0
+    (group,) = groups_of(wall, free=lambda x, y: (x < 2.05) & (y == y))
+    assert group["free"] == 0.0
+    (group,) = groups_of(wall)
+    assert group["free"] == 1.0
 
 
 @pytest.mark.parametrize("entered", [True, False])
 def test_of_what_is_too_wide_only_what_entered_free_space_is_a_group(entered):
-    """A person of radius 0.25 m in front of a wall, joined to it."""
+    """A disc of radius 0.25 m in front of a wall, joined to it."""
     y = np.linspace(-2.0, 2.0, 400)
     wall = np.column_stack([np.full(400, 2.3), y])
-    person = disc_points(2.2, 0.25)
+    disc = disc_points(2.2, 0.25)
     aside = np.abs(np.arctan2(y, 2.3)) > math.asin(0.25 / 2.2)
     free = (lambda x, y: (x < 2.25) & (y == y)) if entered else nowhere
-    _, found = groups_of(np.vstack([person, wall[aside]]), free=free)
+    found = groups_of(np.vstack([disc, wall[aside]]), free=free)
     assert len(found) == entered
     if entered:
-        assert found[0, d.G_X] == pytest.approx(2.2, abs=0.1)
+        assert found["x"] == pytest.approx(2.2, abs=0.1)
 
 
-def test_two_expected_discs_that_touch_are_two_groups():
+def test_the_discs_of_two_tracks_that_touch_are_two_groups():
     """Without the expectation they are one, and it has no track."""
     pair = [disc_points(3.0, 0.3) @ _turn(a) for a in (-0.1, 0.1)]
-    discs = np.array([(*(np.array([3.0, 0.0]) @ _turn(a)), 0.3, 0.1, 1.0) for a in (-0.1, 0.1)])
-    assert len(groups_of(np.vstack(pair))[1]) == 1
-    _, found = groups_of(np.vstack(pair), discs=discs)
-    assert sorted(found[:, d.G_TRACK]) == [0.0, 1.0]
-    for group in found:
-        assert group[[d.G_X, d.G_Y]] == pytest.approx(discs[int(group[d.G_TRACK]), :2], abs=0.1)
+    tracks = np.zeros(2, TRACK)
+    tracks["x"], tracks["y"] = 3.0 * math.cos(0.1), 3.0 * math.sin(0.1) * np.array([-1.0, 1.0])
+    tracks["radius"], tracks["margin"], tracks["measured"] = 0.3, 0.1, 1.0
+    (group,) = groups_of(np.vstack(pair))
+    assert group["owner"] == UNOWNED
+    found = np.sort(groups_of(np.vstack(pair), tracks=tracks), order="owner")
+    assert found["owner"].tolist() == [0, 1]
+    assert found["x"] == pytest.approx(tracks["x"], abs=0.1)
+    assert found["y"] == pytest.approx(tracks["y"], abs=0.1)
 
 
 def _turn(angle):
@@ -171,4 +184,4 @@ def _turn(angle):
 
 
 def test_no_points_make_no_groups():
-    assert len(groups_of(np.empty((0, 2)))[1]) == 0
+    assert len(groups_of(np.empty((0, 2)))) == 0

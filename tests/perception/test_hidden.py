@@ -21,20 +21,21 @@ def space(speed=SPEED):
 
 
 def distance_at(hidden, x, y):
-    row, column = int((y - hidden.y0) / hidden.resolution), int((x - hidden.x0) / hidden.resolution)
-    return float(hidden.distance[row, column])
+    field = hidden.distance
+    row, column = int((y - field.y0) / field.resolution), int((x - field.x0) / field.resolution)
+    return float(field.values[row, column])
 
 
-def test_what_is_seen_now_is_cleared_and_all_that_is_unseen_may_hold_somebody():
+def test_what_is_seen_now_is_cleared_and_all_that_is_unseen_may_hold_a_person():
     hidden = space().update((0, 0), box(0.0, 0.0, 3.0, 6.0), NONE, 0.0)
     assert distance_at(hidden, 4.5, 3.0) == 0.0
     for x in (0.5, 1.5, 2.5):
         assert distance_at(hidden, x, 3.0) == pytest.approx(3.0 - x + HIDDEN_RADIUS, abs=0.15)
 
 
-def test_where_all_is_seen_there_is_nobody():
+def test_where_all_is_seen_there_is_no_hidden_person():
     hidden = space().update((0, 0), ~NONE, NONE, 0.0)
-    assert (hidden.distance == np.float32(FAR)).all()
+    assert (hidden.distance.values == np.float32(FAR)).all()
 
 
 def test_the_distance_is_that_to_the_nearest_body_that_fits():
@@ -56,15 +57,15 @@ def test_the_distance_is_that_to_the_nearest_body_that_fits():
             to_hard = np.hypot(*(hard - cell).T).min(initial=math.inf) * 0.1
             if min(to_clear, to_hard) >= HIDDEN_RADIUS + 0.03 and to_clear <= to_hard:
                 bodies.append(cell)
-        for cell in bodies:  # whoever certainly fits is kept away from
-            assert hidden.distance[cell] <= 0.15
+        for cell in bodies:  # a person certainly fits there
+            assert hidden.distance.values[cell] <= 0.15
 
 
-def test_behind_a_wall_somebody_is_only_where_a_body_fits():
+def test_behind_a_wall_a_person_is_only_where_a_body_fits():
     wall = box(3.0, 0.0, 3.1, 6.0)
     narrow = box(3.1, 0.0, 3.5, 6.0)  # 0.4 m unseen behind it, then seen again
     hidden = space().update((0, 0), ~wall & ~narrow, wall, 0.0)
-    assert (hidden.distance == np.float32(FAR)).all()
+    assert (hidden.distance.values == np.float32(FAR)).all()
     wide = box(3.1, 2.0, 4.1, 4.0)
     hidden = space().update((0, 0), ~wall & ~wide, wall, 0.0)
     assert distance_at(hidden, 3.6, 3.0) <= 0.15
@@ -72,9 +73,9 @@ def test_behind_a_wall_somebody_is_only_where_a_body_fits():
 
 
 @pytest.mark.parametrize("speed", [0.3, 0.5, 1.0])
-def test_clearing_lasts_as_long_as_somebody_needs_to_get_there(speed):
+def test_a_cell_stays_cleared_as_long_as_a_person_needs_to_get_there(speed):
     hiding, left = space(speed), box(0.0, 0.0, 4.0, 6.0)
-    hiding.update((0, 0), left, NONE, 0.0)  # somebody may stand beyond x = 4
+    hiding.update((0, 0), left, NONE, 0.0)  # a person may stand beyond x = 4
     x = 2.0
     free_for = (4.0 - x) / speed
     for now in np.arange(0.1, free_for + 1.0, 0.1):
@@ -87,10 +88,10 @@ def test_clearing_lasts_as_long_as_somebody_needs_to_get_there(speed):
     assert near < HIDDEN_RADIUS + 0.15
 
 
-def test_one_comes_no_nearer_than_one_can_walk_when_nothing_more_is_seen():
+def test_a_person_comes_no_nearer_than_by_walking_when_nothing_more_is_seen():
     hiding = space()
-    before = hiding.update((0, 0), box(0.0, 0.0, 4.0, 6.0), NONE, 0.0).distance.copy()
-    after = hiding.update((0, 0), NONE, NONE, 2.0).distance
+    before = hiding.update((0, 0), box(0.0, 0.0, 4.0, 6.0), NONE, 0.0).distance.values.copy()
+    after = hiding.update((0, 0), NONE, NONE, 2.0).distance.values
     assert (after >= before - SPEED * 2.0 - 0.25).all()
     assert (after <= before + 1e-6).all()
 
@@ -99,8 +100,8 @@ def test_it_moves_along_with_the_local_map():
     hiding = space()
     hiding.update((0, 0), box(0.0, 0.0, 3.0, 6.0), NONE, 0.0)
     hidden = hiding.update((20, -40), NONE, NONE, 0.1)
-    assert (hidden.x0, hidden.y0) == pytest.approx((-2.0, 1.0))
-    assert hidden.resolution == pytest.approx(CELL * FACTOR)
+    assert (hidden.distance.x0, hidden.distance.y0) == pytest.approx((-2.0, 1.0))
+    assert hidden.distance.resolution == pytest.approx(CELL * FACTOR)
     assert distance_at(hidden, 1.5, 3.0) > 0.8
     assert distance_at(hidden, -1.0, 3.0) == 0.0  # has come in unseen
 
@@ -109,4 +110,4 @@ def test_after_forgetting_nothing_is_cleared():
     hiding = space()
     hiding.update((0, 0), ~NONE, NONE, 0.0)
     hiding.forget()
-    assert (hiding.update((0, 0), NONE, NONE, 0.1).distance == 0.0).all()
+    assert (hiding.update((0, 0), NONE, NONE, 0.1).distance.values == 0.0).all()

@@ -3,17 +3,25 @@ import math
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numba import njit
 
 from dynastar.geometry import Pose2D
 from dynastar.perception.past_scans import CLOSEST, GROWTH, MEMORY, PastScans, seen_free
+from dynastar.perception.placed_scan import placed
 from dynastar.scan import LaserScan
 
 HERE = Pose2D(0.0, 0.0, 0.0)
 
 
-def scan(stamp, ranges, angle_min=-math.pi, angle=math.tau):
+def scan(stamp, ranges, angle_min=-math.pi, angle=math.tau, pose=HERE):
     step = angle / len(ranges)
-    return LaserScan(stamp, np.array(ranges, float), angle_min, step, 0.05, 10.0)
+    taken = LaserScan(stamp, np.array(ranges, float), angle_min, step, 0.05, 10.0)
+    return placed(taken, pose, (0.0, 0.0), 0.1)
+
+
+@njit
+def is_free(x, y, space, since=-math.inf):
+    return seen_free(x, y, space, since)
 
 
 def ahead(stamp, distance):
@@ -29,39 +37,37 @@ def ahead(stamp, distance):
 @settings(deadline=None, max_examples=300)
 def test_a_point_is_seen_free_where_both_neighbouring_beams_pass_it(ranges, pose, point, angle):
     """Against the beams' angles, one by one; not at the verge of two gaps."""
-    past, sensor = PastScans(0.0, 0.0), Pose2D(*pose)
-    taken = scan(1.0, ranges, -2.0, angle)
-    past.add(taken, sensor)
+    past, step = PastScans(), angle / len(ranges)
+    past.add(scan(1.0, ranges, -2.0, angle, Pose2D(*pose)))
     far = math.dist(point, pose[:2])
     bearing = math.atan2(point[1] - pose[1], point[0] - pose[0]) - pose[2]
-    offs = (bearing - taken.angles + math.pi) % math.tau - math.pi
-    step = abs(taken.angle_increment)
+    angles = -2.0 + step * np.arange(len(ranges))
+    offs = (bearing - angles + math.pi) % math.tau - math.pi
+    step = abs(step)
     beside = np.flatnonzero(np.abs(offs) < step)
     if np.abs(offs).min() < 1e-6 or np.abs(np.abs(offs) - step).min() < 1e-6:
         return
     reach = min((ranges[i] for i in beside), default=0.0) * (1.0 - 0.5 * step)
     reach = min(reach, 0.1 / step) if len(beside) == 2 else 0.0
     if abs(far - reach) > 1e-3:  # ranges are float32
-        assert seen_free(*point, past.since(0.0)) == (far < reach)
+        assert is_free(*point, past.space()) == (far < reach)
 
 
 def test_what_was_seen_long_ago_counts_until_it_is_forgotten():
-    past = PastScans(0.0, 0.0)
-    past.add(ahead(0.0, 5.0), HERE)
+    past = PastScans()
+    past.add(ahead(0.0, 5.0))
     for k in range(1, 400):
-        past.add(ahead(0.05 * k, 2.0), HERE)
-    assert seen_free(3.0, 0.01, past.since(-math.inf))
-    assert not seen_free(3.0, 0.01, past.since(0.5))
-    assert seen_free(1.9, 0.01, past.since(19.9))
-    past.forget()
-    assert not seen_free(1.9, 0.01, past.since(-math.inf))
+        past.add(ahead(0.05 * k, 2.0))
+    assert is_free(3.0, 0.01, past.space())
+    assert not is_free(3.0, 0.01, past.space(), 0.5)
+    assert is_free(1.9, 0.01, past.space(), 19.9)
 
 
 def test_few_scans_are_kept_the_older_the_further_apart():
-    past = PastScans(0.0, 0.0)
+    past = PastScans()
     for k in range(2000):
-        past.add(ahead(0.05 * k, 5.0), HERE)
-        ages = 0.05 * k - past.since(0.0).stamps
+        past.add(ahead(0.05 * k, 5.0))
+        ages = 0.05 * k - past.space().sensors["stamp"]
         assert ages[0] == 0.0
         assert ages[-1] <= MEMORY
         assert len(ages) < 30
@@ -71,10 +77,10 @@ def test_few_scans_are_kept_the_older_the_further_apart():
 
 
 def test_scans_of_two_lidars_with_different_beams_are_kept_together():
-    past = PastScans(0.0, 0.0)
-    past.add(scan(0.0, [4.0] * 720), HERE)
-    past.add(scan(0.2, [2.0] * 360, -1.0, 2.0), Pose2D(0.0, 0.0, math.pi))
-    assert seen_free(3.0, 0.0, past.since(-1.0))
-    assert seen_free(-3.0, 0.0, past.since(-1.0))
-    assert not seen_free(-3.0, 0.0, past.since(0.1))
-    assert seen_free(-1.9, 0.0, past.since(0.1))
+    past = PastScans()
+    past.add(scan(0.0, [4.0] * 720))
+    past.add(scan(0.2, [2.0] * 360, -1.0, 2.0, Pose2D(0.0, 0.0, math.pi)))
+    assert is_free(3.0, 0.0, past.space(), -1.0)
+    assert is_free(-3.0, 0.0, past.space(), -1.0)
+    assert not is_free(-3.0, 0.0, past.space(), 0.1)
+    assert is_free(-1.9, 0.0, past.space(), 0.1)

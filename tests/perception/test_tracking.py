@@ -7,14 +7,15 @@ from dynastar.geometry import Pose2D, compose
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.perception.detection import Known
 from dynastar.perception.local_map import SEEN_OCCUPIED, LocalMap
-from dynastar.perception.local_map_kernels import scan_points
-from dynastar.perception.tracking import NOTHING_KNOWN, Tracker
+from dynastar.perception.placed_scan import placed
+from dynastar.perception.tracking import Tracker
 from dynastar.robot import ROBOTS, Lidar
 from dynastar.simulation.lidar import LidarSimulator
 
 ROUND = Lidar(720, math.tau, 0.05, 8.0)
 HERE = Pose2D(0.0, 0.0, 0.0)
 OPEN = OccupancyGrid.from_occupied(np.zeros((40, 40), bool), 1.0, -20.0, -20.0)
+NOTHING_KNOWN = Known(np.zeros((1, 1), bool), GridFrame(1.0))
 PILLAR = (2.0, 0.0, 0.5)  # hides about 2 m at x = 4
 
 
@@ -30,16 +31,16 @@ class Watcher:
     def look(self, t, discs, pose=HERE, lidar=None):
         lidar = lidar or self.lidar
         scan = lidar.scan(pose, t, np.array(discs, float).reshape(-1, 3))
-        sensor = compose(pose, scan.mount)
-        limits, angles = (scan.range_min, scan.range_max), (scan.angle_min, scan.angle_increment)
-        points, beams = scan_points(scan.ranges, limits, angles, tuple(sensor))
+        view = placed(scan, compose(pose, scan.mount), (0.02, 0.0), 0.1)
         self.local_map.follow(pose.x, pose.y)
-        moving = self.tracker.update(scan, sensor, points, beams, self.local_map, self.known)
-        self.local_map.see(scan, sensor, points, moving, 0.02, 0.0)
-        self.local_map.update(t)
-        for track in self.movers:
+        moving, left = self.tracker.update(view, self.known)
+        for disc in left:
+            self.local_map.erase(*disc)
+        self.local_map.see(view, moving)
+        self.local_map.update(t, np.zeros_like(self.local_map.states, bool))
+        for track in self.confirmed:
             self.ever.add(track.id)
-        return points, moving
+        return view.points, moving
 
     def watch(self, discs_at, seconds, pose_at=lambda t: HERE, rate=20.0):
         for k in range(round(seconds * rate) + 1):
@@ -47,7 +48,7 @@ class Watcher:
         return moving
 
     @property
-    def movers(self):
+    def confirmed(self):
         return [t for t in self.tracker.tracks if t.state == "confirmed"]
 
     def of(self, *states):
@@ -59,49 +60,49 @@ class Watcher:
 
 @pytest.mark.parametrize("rate", [5.0, 20.0, 40.0])
 @pytest.mark.parametrize(("radius", "speed"), [(0.2, 0.3), (0.3, 1.6), (0.5, 2.0)])
-def test_a_mover_is_found_with_its_velocity_whatever_the_rate_of_scans(rate, radius, speed):
+def test_an_obstacle_is_found_with_its_velocity_at_any_rate_of_scans(rate, radius, speed):
     watcher = Watcher()
     moving = watcher.watch(lambda t: [(3.0, -2.0 + speed * t, radius)], 2.0, rate=rate)
-    (mover,) = watcher.movers
-    assert (mover.vx, mover.vy) == pytest.approx((0.0, speed), abs=0.1)
-    assert (mover.x, mover.y) == pytest.approx((3.0, -2.0 + 2.0 * speed), abs=0.05)
-    assert mover.radius == pytest.approx(radius, abs=0.04)
-    assert mover.still == 0.0
-    assert mover.age == pytest.approx(2.0, abs=0.25)
+    (track,) = watcher.confirmed
+    assert (track.vx, track.vy) == pytest.approx((0.0, speed), abs=0.1)
+    assert (track.x, track.y) == pytest.approx((3.0, -2.0 + 2.0 * speed), abs=0.05)
+    assert track.radius == pytest.approx(radius, abs=0.04)
+    assert track.still == 0.0
+    assert track.age == pytest.approx(2.0, abs=0.25)
     assert moving.sum() > 10
 
 
 @pytest.mark.parametrize("speed", [0.6, 1.0, 1.6])
-def test_a_walker_who_enters_free_space_is_confirmed_in_a_third_of_a_second(speed):
+def test_an_obstacle_that_enters_free_space_is_confirmed_in_a_third_of_a_second(speed):
     """It comes out from behind the end of a wall."""
     wall = np.array([(2.0, 0.0), (2.1, 0.0), (2.1, 3.0), (2.0, 3.0)])
     watcher = Watcher(polygons=[wall])
     edge = 0.25  # its near side comes into view
     for k in range(40):
         watcher.look(k / 20, [(4.0, edge + 1.0 - speed * k / 20, 0.25)])
-        if watcher.movers:
+        if watcher.confirmed:
             break
     seen = 1.0 / speed  # when about half of it is in view
     assert k / 20 < seen + 0.35
 
 
 @pytest.mark.parametrize("distance", [7.0, 10.0])
-def test_a_walker_is_tracked_as_far_as_the_lidar_sees(distance):
+def test_an_obstacle_is_tracked_as_far_as_the_lidar_sees(distance):
     """The local map ends at 5 m."""
     watcher = Watcher(lidar=Lidar(720, math.tau, 0.05, 15.0))
     watcher.watch(lambda t: [(distance, -0.6 + 1.2 * t, 0.3)], 1.0)
-    (mover,) = watcher.movers
-    assert (mover.x, mover.y) == pytest.approx((distance, 0.6), abs=0.1)
-    assert mover.vy == pytest.approx(1.2, abs=0.2)
+    (track,) = watcher.confirmed
+    assert (track.x, track.y) == pytest.approx((distance, 0.6), abs=0.1)
+    assert track.vy == pytest.approx(1.2, abs=0.2)
 
 
 @pytest.mark.parametrize("distance", [0.8, 1.0, 2.0, 4.0])
-def test_a_walker_is_where_it_is_though_less_than_half_is_seen_from_near_by(distance):
+def test_the_position_is_right_though_less_than_half_is_seen_from_near_by(distance):
     watcher = Watcher()
     watcher.watch(lambda t: [(distance + 1.5 - 0.5 * t, 0.0, 0.3)], 3.0)
-    (mover,) = watcher.movers
-    assert (mover.x, mover.y) == pytest.approx((distance, 0.0), abs=0.03)
-    assert mover.radius == pytest.approx(0.3, abs=0.03)
+    (track,) = watcher.confirmed
+    assert (track.x, track.y) == pytest.approx((distance, 0.0), abs=0.03)
+    assert track.radius == pytest.approx(0.3, abs=0.03)
 
 
 def test_a_reversal_is_followed_within_0_4_s():
@@ -110,30 +111,30 @@ def test_a_reversal_is_followed_within_0_4_s():
 
     watcher = Watcher()
     watcher.watch(at, 1.9)
-    (mover,) = watcher.movers
-    assert mover.vy == pytest.approx(-0.8, abs=0.3)
+    (track,) = watcher.confirmed
+    assert track.vy == pytest.approx(-0.8, abs=0.3)
 
 
-def test_the_error_of_a_walker_is_within_its_standard_deviations():
+def test_the_error_of_a_track_is_within_its_standard_deviations():
     watcher = Watcher()
     misses = []
     for k in range(100):
         x = 4.0 - 0.03 * k
         watcher.look(k / 20, [(x, 0.5, 0.3)])
         if k > 20:
-            (mover,) = watcher.movers
-            misses.append((mover.x - x) ** 2 / mover.position_sd**2)
-            misses.append((mover.vx + 0.6) ** 2 / mover.velocity_sd**2)
+            (track,) = watcher.confirmed
+            misses.append((track.x - x) ** 2 / track.position_sd**2)
+            misses.append((track.vx + 0.6) ** 2 / track.velocity_sd**2)
     assert np.mean(misses) < 1.5
 
 
-def test_two_walkers_that_pass_each_other_keep_their_velocities():
+def test_two_obstacles_that_pass_each_other_keep_their_velocities():
     watcher = Watcher()
     watcher.watch(lambda t: [(3.0, -1.5 + 0.6 * t, 0.25), (4.2, 1.5 - 0.6 * t, 0.25)], 4.5)
-    assert sorted(m.vy for m in watcher.movers) == pytest.approx([-0.6, 0.6], abs=0.1)
+    assert sorted(m.vy for m in watcher.confirmed) == pytest.approx([-0.6, 0.6], abs=0.1)
 
 
-def test_two_walkers_who_come_together_stay_two():
+def test_two_obstacles_that_come_together_stay_two():
     watcher = Watcher()
 
     def at(t):
@@ -141,53 +142,55 @@ def test_two_walkers_who_come_together_stay_two():
         return [(4.0 - 0.5 * t, apart, 0.28), (4.0 - 0.5 * t, -apart, 0.28)]
 
     watcher.watch(at, 4.0)
-    assert sorted(m.y for m in watcher.movers) == pytest.approx([-0.3, 0.3], abs=0.08)
+    assert sorted(m.y for m in watcher.confirmed) == pytest.approx([-0.3, 0.3], abs=0.08)
 
 
-def test_two_walkers_who_arrive_side_by_side_are_covered():
+def test_two_obstacles_that_arrive_side_by_side_are_covered():
     watcher = Watcher()
     watcher.watch(lambda t: [(4.0 - 0.5 * t, y, 0.28) for y in (-0.3, 0.3)], 3.0)
-    assert watcher.movers
+    assert watcher.confirmed
     for y in (-0.3, 0.3):
-        assert any(math.hypot(m.x - 2.5, m.y - y) < 0.45 for m in watcher.movers)
-    assert all(m.vx == pytest.approx(-0.5, abs=0.15) for m in watcher.movers)
+        assert any(math.hypot(m.x - 2.5, m.y - y) < 0.45 for m in watcher.confirmed)
+    assert all(m.vx == pytest.approx(-0.5, abs=0.15) for m in watcher.confirmed)
 
 
-def test_a_walker_leaves_no_hits_behind():
+def test_a_moving_obstacle_leaves_no_hits_behind():
     watcher = Watcher()
     watcher.watch(lambda t: [(3.0, -1.5 + 1.0 * t, 0.3)], 3.0)
     assert not (watcher.local_map.states == SEEN_OCCUPIED).any()
 
 
-def test_a_walker_beside_a_wall_of_the_map_is_found():
+def test_an_obstacle_beside_a_wall_of_the_map_is_found():
     """Its points and the wall's are one row; the map tells them apart."""
     mapped = np.zeros((200, 200), bool)
     mapped[102:120, 139:] = True  # from (3.9, 0.2) on a map from (-10, -10)
     wall = np.array([(4.0, 0.3), (4.5, 0.3), (4.5, 1.9), (4.0, 1.9)])
     watcher = Watcher(polygons=[wall], known=Known(mapped, GridFrame(0.1, -10.0, -10.0)))
     watcher.watch(lambda t: [(4.5 - 0.5 * t, 0.0, 0.28)], 1.5)
-    (mover,) = watcher.movers
-    assert (mover.vx, mover.vy) == pytest.approx((-0.5, 0.0), abs=0.1)
+    (track,) = watcher.confirmed
+    assert (track.vx, track.vy) == pytest.approx((-0.5, 0.0), abs=0.1)
 
 
-@pytest.mark.parametrize("walks", [True, False])
-def test_a_walker_close_to_a_wall_that_no_map_shows_is_found(walks):
+@pytest.mark.parametrize("moves", [True, False])
+def test_an_obstacle_close_to_a_wall_that_no_map_shows_is_found(moves):
     wall = np.array([(2.0, 0.05), (2.3, 0.05), (2.3, 1.8), (2.0, 1.8)])
     watcher = Watcher(polygons=[wall])
 
     def at(t):
-        return [(2.3 - max(t - 0.5, 0.0), -0.28, 0.3)] if walks and t > 0.5 else []
+        return [(2.3 - max(t - 0.5, 0.0), -0.28, 0.3)] if moves and t > 0.5 else []
 
     watcher.watch(at, 1.2)
-    assert len(watcher.movers) == walks
-    if walks:
-        assert (watcher.movers[0].vx, watcher.movers[0].vy) == pytest.approx((-1.0, 0.0), abs=0.2)
+    assert len(watcher.confirmed) == moves
+    if moves:
+        assert (watcher.confirmed[0].vx, watcher.confirmed[0].vy) == pytest.approx(
+            (-1.0, 0.0), abs=0.2
+        )
 
 
-# -- what stands -----------------------------------------------------------------------------------
+# -- at rest ---------------------------------------------------------------------------------------
 
 
-def test_what_stands_is_not_confirmed_though_the_robot_drives_past_at_2_m_s():
+def test_nothing_at_rest_is_confirmed_though_the_robot_drives_past_at_2_m_s():
     random = np.random.default_rng(4)
     x, y = random.uniform(-1.0, 9.0, 60), random.uniform(0.6, 4.0, 60)
     y[::2] *= -1.0
@@ -208,7 +211,7 @@ def box(x, y, angle):
 
 
 @pytest.mark.parametrize("omega", [1.0, 4.0])
-def test_what_stands_is_not_confirmed_though_the_robot_turns(omega):
+def test_nothing_at_rest_is_confirmed_though_the_robot_turns(omega):
     """Box corners come into view at the ends of the field of view of 270 degrees."""
     angles = (0.3, 1.5, 2.8, 4.1, 5.3)
     boxes = [box(2.0 * math.cos(a), 2.0 * math.sin(a), a) for a in angles]
@@ -217,13 +220,13 @@ def test_what_stands_is_not_confirmed_though_the_robot_turns(omega):
     assert not watcher.ever
 
 
-def test_what_comes_into_view_and_stands_is_no_track():
+def test_an_obstacle_that_comes_into_view_at_rest_is_no_track():
     watcher = Watcher()
     watcher.watch(lambda t: [(3.0, 0.0, 0.3)], 2.0)
     assert watcher.tracker.tracks == ()
 
 
-def test_who_begins_to_move_is_tentative_until_that_is_certain():
+def test_an_obstacle_that_begins_to_move_is_tentative_until_that_is_certain():
     watcher, states = Watcher(), []
     for k in range(1, 21):
         watcher.look(k / 20, [(3.0, -1.0 + 0.4 * k / 20, 0.3)])
@@ -235,23 +238,23 @@ def test_who_begins_to_move_is_tentative_until_that_is_certain():
 # -- stopping --------------------------------------------------------------------------------------
 
 
-def test_a_walker_who_stops_is_followed_and_is_in_the_local_map_until_it_walks_on():
+def test_an_obstacle_that_stops_stays_in_the_local_map_until_it_moves_on():
     def at(t):
         return [(3.0, -1.0 + 0.8 * min(t, 2.0) + 0.8 * max(t - 6.0, 0.0), 0.3)]
 
     watcher = Watcher()
     watcher.watch(at, 2.0)
-    (walking,) = watcher.movers
+    (moving,) = watcher.confirmed
     for k in range(41, 120):
         watcher.look(k / 20, at(k / 20))
     (stopped,) = watcher.of("stopped")
-    assert stopped.id == walking.id
+    assert stopped.id == moving.id
     assert stopped.still == pytest.approx(3.9, abs=0.4)
     assert (watcher.local_map.states == SEEN_OCCUPIED).any()
     for k in range(120, 140):
         watcher.look(k / 20, at(k / 20))
-    (on,) = watcher.movers
-    assert on.id == walking.id
+    (on,) = watcher.confirmed
+    assert on.id == moving.id
     assert on.still == 0.0
     assert not (watcher.local_map.states == SEEN_OCCUPIED).any()
 
@@ -263,30 +266,30 @@ def behind(t):
     return [PILLAR, (4.0, -3.0 + 0.8 * t, 0.25)]
 
 
-def test_a_walker_who_goes_behind_something_is_predicted():
+def test_an_obstacle_that_goes_behind_another_is_predicted():
     watcher = Watcher()
     watcher.watch(behind, 2.2)
-    (walking,) = watcher.movers
+    (moving,) = watcher.confirmed
     for k in range(45, 80):
         watcher.look(k / 20, behind(k / 20))
     (hidden,) = watcher.of("occluded")
-    assert hidden.id == walking.id
+    assert hidden.id == moving.id
     assert (hidden.x, hidden.y) == pytest.approx((4.0, -3.0 + 0.8 * 3.95), abs=0.3)
     assert hidden.vy == pytest.approx(0.8, abs=0.15)
     assert hidden.unseen > 0.5
-    assert hidden.position_sd > walking.position_sd + 0.05
+    assert hidden.position_sd > moving.position_sd + 0.05
 
 
-def test_who_comes_out_again_is_the_same_walker():
+def test_an_obstacle_that_comes_out_again_is_the_same_track():
     watcher = Watcher()
     watcher.watch(behind, 6.5)
-    (mover,) = watcher.movers
-    assert (mover.vx, mover.vy) == pytest.approx((0.0, 0.8), abs=0.1)
-    assert mover.age == pytest.approx(6.5, abs=0.3)
+    (track,) = watcher.confirmed
+    assert (track.vx, track.vy) == pytest.approx((0.0, 0.8), abs=0.1)
+    assert track.age == pytest.approx(6.5, abs=0.3)
     assert watcher.of("occluded") == []
 
 
-def test_who_stays_hidden_waits_behind_the_edge_for_a_limited_time():
+def test_a_track_that_stays_hidden_waits_behind_the_edge_for_a_limited_time():
     def hiding(t):
         return [PILLAR, (4.0, min(-3.0 + 0.8 * t, 0.0), 0.25)]
 
@@ -309,7 +312,7 @@ def test_a_hiding_place_that_is_seen_empty_ends_the_track():
 
 
 def test_scans_of_two_sensors_do_not_disturb_each_other():
-    """One looks ahead and one back, in turn; the walker is only ahead."""
+    """One looks ahead and one back, in turn; the obstacle is only ahead."""
     half = Lidar(360, math.pi, 0.05, 8.0)
     watcher = Watcher(half)
     back = LidarSimulator(half, OPEN, (), 0.01, np.random.default_rng(7))
@@ -318,15 +321,15 @@ def test_scans_of_two_sensors_do_not_disturb_each_other():
         watcher.look(k / 20, discs)
         watcher.look(k / 20 + 0.03, discs, Pose2D(0.0, 0.0, math.pi), back)
         if k > 12:
-            (mover,) = watcher.movers
-            assert mover.vy == pytest.approx(0.6, abs=0.15)
-    assert watcher.ever == {mover.id}
+            (track,) = watcher.confirmed
+            assert track.vy == pytest.approx(0.6, abs=0.15)
+    assert watcher.ever == {track.id}
 
 
 def test_forget_drops_all_tracks():
     watcher = Watcher()
     watcher.watch(lambda t: [(3.0, -1.0 + t, 0.3)], 1.0)
-    assert watcher.movers
+    assert watcher.confirmed
     watcher.tracker.forget()
     assert watcher.tracker.tracks == ()
 

@@ -212,11 +212,11 @@ def test_a_flood_and_a_page_that_takes_nothing_do_not_slow_the_robot(address):
 def test_a_port_that_is_taken_and_a_scene_that_is_none_are_one_line(address):
     port = address.rstrip("/").rpartition(":")[2]
     for words, says in (
-        (["--port", port], "cannot be listened at"),
+        (["--port", port], f"port {port} is in use; try another --port"),
         (["nowhere"], "unknown scene 'nowhere'"),
         (["nowhere.toml"], "there is no such file"),
         (["--port", "70000"], "expected 0 to 65535"),
-        (["--host", "no such host"], "cannot be listened at"),
+        (["--host", "no such host"], "no such host:8642 is not an address to serve at: "),
     ):
         done = subprocess.run(
             [sys.executable, "-m", "dynastar", "play", *words],

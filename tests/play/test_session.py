@@ -215,7 +215,7 @@ def test_each_preset_drives_and_shows_its_candidates(field):
     for preset in ("paper", "default"):
         ask(field, type="preset", preset=preset)
         drive(field, 1.0)
-        assert len(field.navigator.survey().samples) > 20
+        assert len(field.navigator.status.choice.samples) > 20
         assert told(field)[0]["preset"] == preset
 
 

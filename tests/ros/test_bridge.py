@@ -135,7 +135,7 @@ def test_masks_become_keepout_zones_and_speed_limits(bridge):
 
 
 def test_a_resolution_that_was_a_float32_refines_nothing(bridge):
-    fine = configured("default", {"planning_resolution": 0.05})
+    fine = configured("default", {"resolution": 0.05})
     bridge = Bridge(NodeSettings(), ROBOTS["jackal"], fine)
     bridge.take("map", as_read("nav_msgs/msg/OccupancyGrid", a_map()))
     assert bridge.grid.resolution != 0.05

@@ -151,7 +151,7 @@ def test_a_mover_that_runs_into_a_waiting_robot_touches_it_at_rest():
     mover = Mover(0.4, np.array([0.0, 10.0]), np.array([[15.0, 5.0], [5.0, 5.0]]), "vanish")
     episode = run(scenario(movers=(mover,)), navigator=saying((0.0, {"state": "waiting"})))
     assert (episode.outcome, episode.contact) == ("contact", "resting")
-    assert "at rest" in episode.reason
+    assert "while standing still" in episode.reason
 
 
 def test_a_start_in_contact_ends_before_it_begins():

@@ -98,7 +98,7 @@ def limited(episode: Episode, v_max: float) -> dict[str, float]:
     """Causes that limited the speed, with their seconds, the longest first.
 
     A cause is what the controller names (``Episode.limits``); where it names none, its state
-    ("state: waiting"), or "not named" while it follows the path at less than 95 % of ``v_max``.
+    ("state: waiting"), or "other" while it follows the path at less than 95 % of ``v_max``.
     """
     times = episode.trajectory.times
     causes = np.array(episode.limits if len(episode.limits) == len(times) else [""] * len(times))
@@ -108,7 +108,7 @@ def limited(episode: Episode, v_max: float) -> dict[str, float]:
         if not cause and state not in UNHINDERED:
             cause = f"state: {state}"
         elif not cause and abs(episode.commands[tick, 0]) < SLOW * v_max:
-            cause = "not named"
+            cause = "other"
         if cause:
             seconds[cause] = seconds.get(cause, 0.0) + float(duration)
     ordered = sorted(seconds.items(), key=lambda item: (-item[1], item[0]))

@@ -9,6 +9,7 @@ from dynastar.errors import PlanningError
 from dynastar.geometry import Goal, Twist, wrap_angle
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import Navigator, NavigatorConfig, RobotState, State, Status
+from dynastar.navigator.aligned import turned
 from dynastar.path import Path
 from dynastar.robot import Robot, slew
 
@@ -31,8 +32,8 @@ class Follower:
         self._calm = limits._replace(
             omega_accel=CALM * limits.omega_accel, omega_brake=CALM * limits.omega_brake
         )
-        self.planning_map = Navigator(grid, robot, config).planning_map
-        self.status = Status(planning_frame=self.planning_map.frame)
+        self.planners = Navigator(grid, robot, config).planners
+        self.status = Status(planning_frame=self.planners.planning_map.grid.frame)
         self._goals: list[Goal] = []
         self._path: Path | None = None
         self._s = 0.0
@@ -59,14 +60,16 @@ class Follower:
     def _plan(self, state: RobotState) -> bool:
         goal = self._goals[0]
         try:
-            plan = self.planning_map.plan(state.pose[:2], (goal.x, goal.y), explored=False)
+            plan = self.planners.plan(state.pose[:2], (goal.x, goal.y), explored=False)
         except PlanningError as error:
             self._goals = []
             self._say("blocked", str(error))
             self.status = replace(self.status, error=error)
             return False
         self._path, self._s = plan.path, 0.0
-        limits = self.planning_map.speed_limit(points(plan.path))
+        planning_map = self.planners.planning_map
+        places = turned(points(plan.path), -planning_map.grid.frame.yaw)
+        limits = planning_map.speed_limit(places)
         self._profile = SpeedProfile(plan.path, self._calm, limits)
         self.status = replace(
             self.status, plan=plan, plan_id=self.status.plan_id + 1, plan_reason="a plan is needed"

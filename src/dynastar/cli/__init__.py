@@ -28,7 +28,7 @@ COMMANDS = {
     "ros": "the navigator as a ROS 2 node",
     "ros-sim": "the simulator as a ROS 2 node",
     "replay": "drive by the scans and odometry of a recording",
-    "play": "drive live in the browser: send the robot, paint obstacles, drop walkers",
+    "play": "drive live in the browser: set goals, paint obstacles, add walkers",
     "warmup": "compile everything now, so that the first mission does not wait",
 }
 

@@ -8,7 +8,7 @@ from tqdm import tqdm
 
 from dynastar import compiled
 
-PARTS = "plan_and_simulate", "drive"
+PARTS = "plan", "drive"
 FILES = 400  # that the cache holds, about, when all is compiled
 WAIT = 0.2  # s
 WORDS = "dynastar compiles its kernels, once for this version"
@@ -64,21 +64,15 @@ def _wait(children: "list[subprocess.Popen[bytes]]") -> None:
             bar.refresh()
 
 
-def plan_and_simulate() -> None:
-    """Compile the kernels of planners, simulator and suites."""
-    from dynastar.bench.suites import people, random_worlds
-    from dynastar.planning import warm_up_all
-    from dynastar.simulation import warm_up
+def plan() -> None:
+    """Compile the kernels of the default planners."""
+    from dynastar.planning import warm_up_default
 
-    warm_up_all()
-    warm_up()
-    people.judge(0, 0)
-    for number in range(len(random_worlds.ROBOT_NAMES)):  # discs and polygons
-        random_worlds.make(0, number)
+    warm_up_default()
 
 
 def drive() -> None:
-    """Compile the kernels of the navigator."""
-    from dynastar.navigator.navigator import warm_up
+    """Compile the kernels of the navigator and the simulator."""
+    from dynastar.simulation import warm_up
 
     warm_up()

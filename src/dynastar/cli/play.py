@@ -9,7 +9,7 @@ from dynastar.config import choose
 from dynastar.extras import require
 
 DESCRIPTION = (
-    "Serves a page that drives a scene live: send the robot by clicks, paint obstacles, "
+    "Serves a page that drives a scene live: set goals by clicks, paint obstacles, "
     "put walkers in its way, change weights, and see what it considers."
 )
 
@@ -61,6 +61,9 @@ def execute(arguments: argparse.Namespace) -> int:
     prepare()
     from dynastar.play.server import serve
     from dynastar.play.session import Session
+    from dynastar.simulation import warm_up
+
+    warm_up()
 
     def ready(address: str) -> None:
         print(address, flush=True)

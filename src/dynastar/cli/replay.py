@@ -84,7 +84,7 @@ def execute(arguments: argparse.Namespace) -> int:
     found = {name: replay(bag, overrides, remap, progress=True) for name, overrides in runs.items()}
     summaries = {name: one.summary() for name, one in found.items()}
     write_folder(folder, found, summaries)
-    print(f"what came of it is in {folder}", file=sys.stderr)
+    print(f"results written to {folder}", file=sys.stderr)
     print(as_json(summaries) if arguments.json else side_by_side(summaries))
     return 0
 

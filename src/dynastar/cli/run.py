@@ -78,7 +78,7 @@ def execute(arguments: argparse.Namespace) -> int:
         print(f"the recording is {arguments.bag}", file=sys.stderr)
     summary = metrics.measure(episode)._asdict()
     write_folder(folder, episode, summary, gif=not arguments.no_gif)
-    print(f"what came of it is in {folder}", file=sys.stderr)
+    print(f"results written to {folder}", file=sys.stderr)
     print(as_json(summary) if arguments.json else as_table(summary))
     arrived = summary["outcome"] == "arrived" and not episode.contact
     return 0 if arrived else 1

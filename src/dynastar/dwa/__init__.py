@@ -2,8 +2,8 @@
 
 from dynastar.dwa.config import DwaConfig, Weights
 from dynastar.dwa.dwa import Body, Choice, DynamicWindow, body_of
-from dynastar.dwa.scene import CostToGo, Scene
+from dynastar.dwa.scene import Scene
 
 __all__ = [
-    "Body", "Choice", "CostToGo", "DwaConfig", "DynamicWindow", "Scene", "Weights", "body_of",
+    "Body", "Choice", "DwaConfig", "DynamicWindow", "Scene", "Weights", "body_of",
 ]  # fmt: skip

@@ -4,34 +4,44 @@ import math
 
 import numpy as np
 
-from dynastar.compiled import njit
+from dynastar.compiled import inner, njit
+from dynastar.dwa.motion import Pose
+from dynastar.field import bilinear, is_inside
+
+EXACT_WITHIN = 0.3  # m between obstacle and footprint, beyond which its circle stands for it
 
 
-@njit(cache=True, inline="always")
+@inner
 def distance_at(field, x, y):
-    """A lower bound of the distance (m) from a point to the nearest closed cell's centre, 0 outside.
+    """A lower bound of the distance (m) from a point to the nearest marked cell's centre, 0 outside.
 
-    Bilinear between the field's cell centres; between them the distance to a point bends by at most
-    resolution^2 / 4d, which is taken off.
+    Between the cells' centres the distance to a point bends by at most resolution^2 / 4d, which is
+    taken off.
     """
-    rows, columns = field.distance.shape
-    per_cell = 1.0 / field.resolution
-    fx, fy = (x - field.x0) * per_cell - 0.5, (y - field.y0) * per_cell - 0.5
-    if not ((fx >= 0.0) & (fy >= 0.0) & (fx < columns - 1.0) & (fy < rows - 1.0)):
+    if not is_inside(field, x, y):
         return 0.0
-    c, r = int(fx), int(fy)
-    a, b = fx - c, fy - r
-    above, below = field.distance[np.uint64(r)], field.distance[np.uint64(r + 1)]
-    i, j = np.uint64(c), np.uint64(c + 1)
-    d = (1.0 - b) * ((1.0 - a) * above[i] + a * above[j]) + b * (
-        (1.0 - a) * below[i] + a * below[j]
-    )
-    if d <= field.resolution:
-        return max(0.0, d - 0.5 * field.resolution)
-    return d - 0.25 * field.resolution * field.resolution / d
+    distance, a = bilinear(field, x, y), field.resolution
+    if distance <= a:
+        return max(0.0, distance - 0.5 * a)
+    return distance - 0.25 * a * a / distance
 
 
-@njit(cache=True)
+@inner
+def least_clearance(field, body, pose):
+    """Metres from the footprint to the nearest marked cell's centre; exact where it matters."""
+    distance = distance_at(field, pose.x, pose.y)
+    if distance - body.circumscribed > EXACT_WITHIN:
+        return distance - body.circumscribed
+    least = distance - body.inscribed
+    for i in range(len(body.probes)):
+        ahead, left = body.probes[i, 0], body.probes[i, 1]
+        x = pose.x + pose.cos * ahead - pose.sin * left
+        y = pose.y + pose.sin * ahead + pose.cos * left
+        least = min(least, distance_at(field, x, y))
+    return least
+
+
+@inner
 def polygon_distance(vertices, px, py):
     """Distance (m) from a point to a convex polygon in the same frame, 0 inside."""
     n = len(vertices)
@@ -50,41 +60,42 @@ def polygon_distance(vertices, px, py):
     return 0.0 if inside else math.sqrt(best)
 
 
-@njit(cache=True)
+@inner
 def body_distance(body, pose, x, y):
-    """Distance (m) from a point to the footprint at ``pose`` (x, y, cos, sin), 0 inside."""
-    dx, dy = x - pose[0], y - pose[1]
+    """Distance (m) from a point to the footprint at ``pose``, 0 inside."""
+    dx, dy = x - pose.x, y - pose.y
     if len(body.vertices) == 0:
         return max(0.0, math.hypot(dx, dy) - body.circumscribed)
-    return polygon_distance(body.vertices, pose[2] * dx + pose[3] * dy, pose[2] * dy - pose[3] * dx)
+    ahead, left = pose.cos * dx + pose.sin * dy, pose.cos * dy - pose.sin * dx
+    return polygon_distance(body.vertices, ahead, left)
 
 
-@njit(cache=True)
-def spare(field, body, margin, start, pose):
-    """Metres left until a rule is broken for some closed cell; negative once it is, exact near 0.
+@inner
+def clearance_slack(field, body, margin, start, pose):
+    """Slack (m) of the clearance constraint at ``pose``, negative if violated.
 
-    The rule: the footprint keeps ``margin`` from the centre of every closed cell; from one that was
-    nearer when the footprint stood at ``start`` it keeps at least that distance.
+    The constraint: the footprint keeps ``margin`` from the centre of every marked cell of ``field``,
+    or its distance at ``start`` if that was smaller. The slack is exact only within a cell of 0.
     """
-    d = distance_at(field, pose[0], pose[1])
-    if d - body.circumscribed >= margin:
-        return d - body.circumscribed - margin
-    rows, columns = field.distance.shape
-    reach = body.circumscribed + margin + field.resolution
-    first = max(0, int((pose[1] - reach - field.y0) / field.resolution))
-    last = min(rows - 1, int((pose[1] + reach - field.y0) / field.resolution))
-    low = max(0, int((pose[0] - reach - field.x0) / field.resolution))
-    high = min(columns - 1, int((pose[0] + reach - field.x0) / field.resolution))
-    least = field.resolution
+    distance, a = distance_at(field, pose.x, pose.y), field.resolution
+    if distance - body.circumscribed >= margin:
+        return distance - body.circumscribed - margin
+    rows, columns = field.values.shape
+    reach = body.circumscribed + margin + a
+    first = max(0, int((pose.y - reach - field.y0) / a))
+    last = min(rows - 1, int((pose.y + reach - field.y0) / a))
+    low = max(0, int((pose.x - reach - field.x0) / a))
+    high = min(columns - 1, int((pose.x + reach - field.x0) / a))
+    least = a
     for row in range(first, last + 1):
-        y = field.y0 + (row + 0.5) * field.resolution
+        y = field.y0 + (row + 0.5) * a
         column = low
         while column <= high:
-            distance = field.distance[row, column]
-            if distance > 0.0:  # no cell is closed nearer than that
-                column += max(1, int(distance / field.resolution))
+            to_marked = field.values[row, column]
+            if to_marked > 0.0:  # no cell is marked nearer than that
+                column += max(1, int(to_marked / a))
                 continue
-            x = field.x0 + (column + 0.5) * field.resolution
+            x = field.x0 + (column + 0.5) * a
             column += 1
             near = body_distance(body, pose, x, y)
             if near - margin >= least:
@@ -98,12 +109,12 @@ def spare(field, body, margin, start, pose):
 
 @njit(cache=True)
 def kept_margin(field, body, margin, pose):
-    """The margin (m) that a robot at ``pose`` keeps from every closed cell.
+    """The margin (m) that a robot at ``pose`` keeps from every marked cell of ``field``.
 
-    Noise may set a cell nearer to the robot than its margin. Beside a wall it could then move
+    Noise may mark a cell nearer to the robot than its margin. Beside a wall it could then move
     neither along it nor away, so it keeps what it has, but at least half of the margin, and half
     a cell's diagonal: the obstacle may stand anywhere in the cell.
     """
-    nowhere = (1e9, 1e9, 1.0, 0.0)
+    nowhere = Pose(1e9, 1e9, 1.0, 0.0)
     least = min(margin, max(0.5 * margin, field.resolution / math.sqrt(2.0)))
-    return min(margin, max(least, spare(field, body, 0.0, nowhere, pose)))
+    return min(margin, max(least, clearance_slack(field, body, 0.0, nowhere, pose)))

@@ -1,6 +1,5 @@
-"""The dynamic window approach (IV.B, Eqs. 5-9): which speeds to ask for next, and why."""
+"""The dynamic window approach (IV.B, Eqs. 5-9): which speeds to command next, and why."""
 
-import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -8,27 +7,28 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.dwa import admissible
-from dynastar.dwa.config import DwaConfig
-from dynastar.dwa.rollout import LOOKS
+from dynastar.dwa.config import DwaConfig, Weights
+from dynastar.dwa.motion import State, state_at
+from dynastar.dwa.rollout import ROW, Schedule, schedule_of
 from dynastar.dwa.scene import AT_REST, Manoeuvre, Scene
-from dynastar.dwa.search import search
-from dynastar.dwa.window import dynamic_window, sample_window
+from dynastar.dwa.search import CANDIDATE, SAMPLES, is_admissible, search
+from dynastar.dwa.terms import LOOKS, Terms
 from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import Limits, Robot
 
-LONG_TIME = 1.5  # s that a sample is held for at the longest
-
 Floats = npt.NDArray[np.float64]
-TERMS = ("heading", "dist", "vel", "simi", "risk")
+TERMS = Terms._fields
 REFUSALS = {
     admissible.NO_STOP: "no certified stop",
-    admissible.MOVER: "moving obstacle",
+    admissible.MOVING: "moving obstacle",
     admissible.HIDDEN: "unseen space",
 }
+LONG_HOLD = 1.5  # s that a sample is held for at the longest
+FULL_SPEED = 0.95  # of a speed limit, from which on the robot drives at it
 
 
 class Body(NamedTuple):
-    """A footprint as the kernels take it; ``probes`` (k, 3) are discs x, y, radius that stand for it."""
+    """A footprint as the kernels take it; ``probes`` (k, 2) are points of a polygon's outline (m)."""
 
     vertices: Floats
     probes: Floats
@@ -36,30 +36,26 @@ class Body(NamedTuple):
     circumscribed: float
 
 
-class Span(NamedTuple):
-    """Times of the roll-outs, in steps of ``step`` seconds.
-
-    Held for ``steps`` or ``long_steps``, rolled out for ``horizon_steps``; risk is that of a disc of
-    ``risk_radius`` (m). ``comfort`` (m) and ``hysteresis`` as in ``DwaConfig``.
-    """
-
-    step: float
-    steps: int
-    long_steps: int
-    horizon_steps: int
-    comfort: float
-    hysteresis: float
-    risk_radius: float
-
-
 class Rules(NamedTuple):
-    """Rules for evaluating candidates: shape, limits, span, weights (Eq. 9), period (s)."""
+    """What does not change from tick to tick: robot, weights of Eq. 9, times, and settings.
+
+    Samples are held as long as ``schedule`` says, or for ``long_hold`` (s). ``risk_radius`` (m) is
+    that of the disc that stands for the robot in the risk; the other settings are those of
+    ``DwaConfig``.
+    """
 
     body: Body
     limits: Limits
-    span: Span
-    weights: tuple[float, float, float, float, float]
+    weights: Weights
+    schedule: Schedule
+    long_hold: float
     period: float
+    reach: float
+    v_samples: int
+    omega_samples: int
+    comfort: float
+    hysteresis: float
+    risk_radius: float
 
 
 def body_of(robot: Robot) -> Body:
@@ -67,10 +63,30 @@ def body_of(robot: Robot) -> Body:
     shape = robot.footprint
     corners = shape.vertices
     points = np.vstack([corners, 0.5 * (corners + np.roll(corners, 1, axis=0))])
-    probes = np.vstack(
-        [[[0.0, 0.0, shape.inscribed]], np.column_stack([points, np.zeros(len(points))])]
+    return Body(corners, points, shape.inscribed, shape.circumscribed)
+
+
+def rules_of(robot: Robot, config: DwaConfig, period: float) -> Rules:
+    """What the kernels need to know of a robot, its settings and the time between commands (s)."""
+    step = min(config.step, config.arc_time / 4)
+    held = max(4, round(config.arc_time / step))
+    far = config.horizon + 0.5 * robot.limits.v_max / robot.limits.v_brake
+    steps = LOOKS * max(2, round(far / step / LOOKS))
+    shape = robot.footprint
+    return Rules(
+        body=body_of(robot),
+        limits=robot.limits,
+        weights=config.weights,
+        schedule=schedule_of(step, held, steps, LOOKS),
+        long_hold=step * max(round(LONG_HOLD / step), held),
+        period=period,
+        reach=max(period, config.reach),
+        v_samples=config.v_samples,
+        omega_samples=config.omega_samples,
+        comfort=config.comfort,
+        hysteresis=config.hysteresis,
+        risk_radius=0.5 * (shape.inscribed + shape.circumscribed),
     )
-    return Body(corners, probes, shape.inscribed, shape.circumscribed)
 
 
 @dataclass(frozen=True)
@@ -78,8 +94,9 @@ class Choice:
     """Result of a tick: the command, its manoeuvre and the rest of that manoeuvre.
 
     ``samples`` (n, 2), ``refused`` (n,) codes (0 admissible), ``terms`` (n, 5) and ``score`` (n,) are
-    copies; samples that were dropped early score -inf. ``limited_by`` says what kept it from being
-    faster.
+    copies; candidates without an admissible manoeuvre score -inf. The first two are the rest of the
+    last manoeuvre and following the cost-to-go at once. ``limited_by`` says what kept the command
+    from being faster.
     """
 
     command: Twist | None
@@ -93,50 +110,15 @@ class Choice:
     limited_by: str
 
 
-def _greater(twist: Twist, measured: Twist | None) -> tuple[float, float]:
-    """The greater of two twists' speeds, each by its magnitude."""
-    if measured is None:
-        return twist.v, twist.omega
-    v, omega = (max(pair, key=abs) for pair in zip(twist, measured, strict=True))
-    return v, omega
-
-
 class DynamicWindow:
-    """One robot's dynamic window; its buffers are made once."""
+    """One robot's dynamic window; its arrays are made once."""
 
     def __init__(self, robot: Robot, config: DwaConfig, period: float) -> None:
         self.robot, self.config, self.period = robot, config, period
-        limits = robot.limits
-        self.body = body_of(robot)
-        step = min(config.step, config.arc_time / 4)
-        steps = max(4, round(config.arc_time / step))
-        far = config.horizon + 0.5 * limits.v_max / limits.v_brake
-        self.span = Span(
-            step,
-            steps,
-            max(round(LONG_TIME / step), steps),
-            LOOKS * max(2, round(far / step / LOOKS)),
-            config.comfort,
-            config.hysteresis,
-            0.5 * (robot.footprint.inscribed + robot.footprint.circumscribed),
-        )
-        n_v, n_omega = config.v_samples, config.omega_samples
-        n = (n_v + 3) * (n_omega + 3) + 2
-        self._speeds, self._rates = np.empty(n_v + 3), np.empty(n_omega + 3)
-        self._reach = max(period, config.reach)
-        self._buffers = (
-            np.empty((n, 2)),
-            np.empty((n, 2)),
-            np.zeros(n),
-            np.zeros(n, np.int64),
-            np.zeros((n, 5)),
-            np.zeros(n, np.int64),
-            np.empty(n),
-        )
-        self.complete = False  # whether ``choose`` scores all, as ``survey`` does
-        alpha, beta, gamma, sigma, rho = map(float, config.weights)
-        weights = alpha, beta, gamma, sigma, rho
-        self._rules = Rules(self.body, limits, self.span, weights, period)
+        self.rules = rules_of(robot, config, period)
+        n = (config.v_samples + 3) * (config.omega_samples + 3) + SAMPLES
+        self._candidates = np.zeros(n, CANDIDATE)
+        self._rows = np.zeros(len(self.rules.schedule.step), ROW)
 
     def choose(
         self, pose: Pose2D, twist: Twist, scene: Scene, measured: Twist | None = None
@@ -145,49 +127,30 @@ class DynamicWindow:
 
         Stops are certified from the greater of ``twist`` and the ``measured`` twist, if there is one.
         """
-        config, limits = self.config, self.robot.limits
-        window = dynamic_window(*twist, limits, min(scene.v_cap, limits.v_max), self._reach)
-        samples, speeds, rates = self._buffers[0], self._speeds, self._rates
-        most = config.v_samples, config.omega_samples
-        n = sample_window(window, speeds, rates, *most, samples)
-        return self._search(pose, twist, _greater(twist, measured), scene, n)
-
-    def survey(
-        self, pose: Pose2D, twist: Twist, scene: Scene, measured: Twist | None = None
-    ) -> Choice:
-        """As ``choose``, with the scores of all admissible samples, also of those that cannot win."""
-        before, self.complete = self.complete, True
-        try:
-            return self.choose(pose, twist, scene, measured)
-        finally:
-            self.complete = before
-
-    def _search(
-        self, pose: Pose2D, twist: Twist, stop_from: tuple[float, float], scene: Scene, n: int
-    ) -> Choice:
-        """The best of the ``n`` samples in the buffers."""
-        samples, commands, holds, tails, terms, refused, score = self._buffers
-        state = ((pose.x, pose.y, math.cos(pose.theta), math.sin(pose.theta)), *twist)
-        best = search(scene, self._rules, state, stop_from, n, self._buffers, not self.complete)
-        n += 2
-        refused = refused[:n].copy()
-        counts = np.bincount(refused, minlength=max(REFUSALS) + 1)
-        command = Twist(*commands[best].tolist()) if best >= 0 else None
-        left, chosen = AT_REST, None
+        n, best = search(
+            scene, self.rules, state_at(*pose, *twist), _stop_from(pose, twist, measured),
+            self._candidates, self._rows,
+        )  # fmt: skip
+        candidates = self._candidates[:n].copy()
+        samples = np.column_stack([candidates["v"], candidates["omega"]])
+        counts = np.bincount(candidates["refused"], minlength=max(REFUSALS) + 1)
+        command, chosen, left = None, None, AT_REST
         if best >= 0:
-            v, omega = samples[best].tolist()
-            chosen = Manoeuvre(v, omega, float(holds[best]), int(tails[best]))
+            found = candidates[best]
+            command = Twist(float(found["command_v"]), float(found["command_omega"]))
+            v, omega, hold = (float(found[name]) for name in ("v", "omega", "hold"))
+            chosen = Manoeuvre(v, omega, hold, int(found["tail"]))
             left = chosen._replace(hold=max(chosen.hold - self.period, 0.0))
         return Choice(
             command,
             chosen,
             left,
             {words: int(counts[code]) for code, words in REFUSALS.items()},
-            samples[:n].copy(),
-            refused,
-            terms[:n].copy(),
-            score[:n].copy(),
-            self._limit(chosen, twist.v, samples[:n], refused, scene.v_cap),
+            samples,
+            candidates["refused"],
+            np.column_stack([candidates[name] for name in TERMS]),
+            candidates["score"],
+            self._limit(chosen, twist.v, samples, candidates["refused"], scene.v_cap),
         )
 
     def _limit(
@@ -199,18 +162,17 @@ class DynamicWindow:
         v_cap: float,
     ) -> str:
         """Name what limited the speed of a choice, "" at full speed."""
-        limits = self.robot.limits
+        full_speed = FULL_SPEED * self.robot.limits.v_max
         if chosen is None:
             return "no admissible command"
-        if chosen.v >= 0.95 * limits.v_max:
-            return "" if v >= 0.95 * limits.v_max else "acceleration"
-        if chosen.v >= 0.95 * v_cap:
+        if chosen.v >= full_speed:
+            return "" if v >= full_speed else "acceleration"
+        if chosen.v >= FULL_SPEED * v_cap:
             return "speed limit"
         codes = refused[samples[:, 0] > chosen.v + 1e-6]
         if len(codes) == 0:
             return "acceleration"
-        most = int(np.bincount(codes).argmax())
-        return REFUSALS.get(most, "score")
+        return REFUSALS.get(int(np.bincount(codes).argmax()), "score")
 
     def admits(
         self,
@@ -221,10 +183,11 @@ class DynamicWindow:
         measured: Twist | None = None,
     ) -> bool:
         """Whether a command from outside the search is admissible; twists as in ``choose``."""
-        stop_from = _greater(twist, measured)
-        state = ((pose.x, pose.y, math.cos(pose.theta), math.sin(pose.theta)), *stop_from)
-        rest = self.robot.limits, state, (float(command.v), float(command.omega)), self.period
-        for check in (admissible.certified_stop, admissible.rests_in_time):
-            if check(scene, self.body, *rest) != admissible.ADMISSIBLE:
-                return False
-        return True
+        stop_from = _stop_from(pose, twist, measured)
+        return bool(is_admissible(scene, self.rules, stop_from, tuple(map(float, command))))
+
+
+def _stop_from(pose: Pose2D, twist: Twist, measured: Twist | None) -> State:
+    """The state from which stops are certified: with the greater speeds of two twists."""
+    v, omega = (max(pair, key=abs) for pair in zip(twist, measured or twist, strict=True))
+    return state_at(*pose, v, omega)

@@ -1,30 +1,15 @@
-"""What a dynamic window is judged against, as the kernels take it."""
+"""What the samples of a dynamic window are evaluated against, as the kernels take it."""
 
 from typing import NamedTuple
 
-import numpy as np
-import numpy.typing as npt
-
-from dynastar.clearance import DistanceField
+from dynastar.field import Field
+from dynastar.guidance.cost_to_go import CostToGo
 from dynastar.perception.hidden import Hidden
-from dynastar.perception.prediction import People
-
-Floats = npt.NDArray[np.float64]
-
-
-class CostToGo(NamedTuple):
-    """The cost-to-go (m) over the local map, and where it falls, see ``cost_to_go``."""
-
-    value: Floats
-    filled: Floats
-    slope: Floats
-    x0: float
-    y0: float
-    resolution: float
+from dynastar.perception.prediction import Prediction
 
 
 class Manoeuvre(NamedTuple):
-    """Speeds to ask for (m/s, rad/s), for how long (s), and the tail that comes then."""
+    """Speeds to hold (m/s, rad/s), for how long (s), and the tail that follows."""
 
     v: float
     omega: float
@@ -32,29 +17,29 @@ class Manoeuvre(NamedTuple):
     tail: int
 
 
-FOLLOW, STOP, BACK = range(3)
+TAILS = FOLLOW, STOP, BACK = 0, 1, 2  # follow the cost-to-go, brake to rest, reverse
 AT_REST = Manoeuvre(0.0, 0.0, 0.0, STOP)
 
 
 class Scene(NamedTuple):
     """The scene against which a window is evaluated.
 
-    ``closed`` are distances to what is not observed free, ``obstacles`` to what is occupied.
-    ``margin`` (m) is kept from both, ``kept`` from the former where the robot stands nearer than
-    that. ``ahead`` (s) is when a command given now acts, ``last`` what is left of the manoeuvre that
-    was chosen last, ``v_cap`` (m/s) the speed limit. ``path`` are distances to the path ahead, and
-    ``sigma`` the least weight of keeping to it.
+    ``distance_to_unknown`` is to what is not observed free, ``distance_to_obstacle`` to what is
+    occupied. The footprint keeps ``margin`` (m) from obstacles and ``margin_to_unknown`` from unknown
+    space, which is less where the robot stands nearer than that. ``latency`` (s) is when a command
+    given now acts, ``last`` the rest of the manoeuvre chosen last, ``v_cap`` (m/s) the speed limit,
+    ``path_weight`` the least weight of keeping to the path.
     """
 
-    closed: DistanceField
-    obstacles: DistanceField
+    distance_to_unknown: Field
+    distance_to_obstacle: Field
+    distance_to_path: Field
     cost_to_go: CostToGo
-    people: People
+    moving: Prediction
     hidden: Hidden
     margin: float
-    kept: float
-    ahead: float
+    margin_to_unknown: float
+    latency: float
     last: Manoeuvre
     v_cap: float
-    path: DistanceField
-    sigma: float
+    path_weight: float

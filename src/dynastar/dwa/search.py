@@ -1,173 +1,156 @@
-"""The search over the window: every sample's manoeuvres are rolled out, the best is taken.
+"""The search over the window: every candidate's manoeuvres are rolled out, the best one is taken.
 
-A manoeuvre holds the sample for a short or a long time; then the robot follows the cost-to-go,
-stops, or backs off.
+A candidate's speeds are held for a while; then the robot follows the cost-to-go, brakes to rest, or
+reverses. Two candidates stand before the samples of the window: the rest of the manoeuvre chosen
+last, and following the cost-to-go at once.
 """
 
 import numpy as np
 
-from dynastar.compiled import njit
+from dynastar.compiled import inner, njit
 from dynastar.dwa.admissible import (
     ADMISSIBLE,
-    HIDDEN,
-    NO_STOP,
+    MOVING,
     certified_stop,
     rests_in_time,
 )
+from dynastar.dwa.clearance import least_clearance
 from dynastar.dwa.motion import slew, stopping_time
-from dynastar.dwa.objective import objective
-from dynastar.dwa.rollout import (
-    LOOKS,
-    SCORED,
-    TOUCHED,
-    farthest,
-    future,
-    least_clearance,
-    pose_value,
-    tail_speeds,
-    weights_of,
+from dynastar.dwa.rollout import Start, roll_out, tail_speeds, write
+from dynastar.dwa.scene import BACK, FOLLOW, TAILS, Manoeuvre
+from dynastar.dwa.terms import Terms, evaluate, most_progress, objective, passes_clear, state_value
+from dynastar.dwa.window import possible, reachable, spaced
+
+LAST, FOLLOW_NOW, SAMPLES = range(3)  # the first two candidates, and the first sample
+SLOW = 0.1  # of v_max, up to which a speed is not held for long
+SHARP = 2.0  # rad/s, from which on a turning rate is not held for long
+CANDIDATE = np.dtype(
+    [(name, np.float64) for name in ("v", "omega", "command_v", "command_omega", "hold", "score")]
+    + [(name, np.float64) for name in Terms._fields]
+    + [("tail", np.int64), ("refused", np.int64)]
 )
-from dynastar.dwa.scene import BACK, FOLLOW, STOP
-
-LEAST = 0.1  # m of progress that is worth all of it, at least
-
-
-@njit(cache=True)
-def worth_holding(sample, limits, tail, long, people):
-    """Whether a future of that kind tells anything: long holds and other tails matter among people."""
-    if not people and tail != FOLLOW:
-        return False
-    if tail == BACK and (long or limits.v_min >= 0.0):
-        return False
-    return not (long and (abs(sample[0]) < 0.1 * limits.v_max or abs(sample[1]) > 2.0))
-
-
-@njit(cache=True)
-def refusal(scene, rules, state, command):
-    """ADMISSIBLE, or why a command is not; MOVER where it does not rest in time."""
-    body, limits, period = rules.body, rules.limits, rules.period
-    code = certified_stop(scene, body, limits, state, command, period)
-    if code != ADMISSIBLE:
-        return code
-    return rests_in_time(scene, body, limits, state, command, period)
-
-
-@njit(cache=True)
-def prepare(scene, rules, state, stop_from, n, buffers):
-    """Writes the last two candidates, the commands of all n + 2, and why they are refused.
-
-    ``stop_from`` (v, omega) are the speeds from which stops are certified.
-    """
-    limits, comfort, period = rules.limits, rules.span.comfort, rules.period
-    samples, commands, refused = buffers[0], buffers[1], buffers[5]
-    pose, v, omega = state
-    field, last = scene.cost_to_go, scene.last
-    gap = least_clearance(scene.obstacles, rules.body, pose) - scene.margin
-    samples[n] = last.v, last.omega
-    if last.hold < 0.5 * rules.span.step:
-        samples[n] = tail_speeds(field, limits, comfort, pose, v, gap, last.tail)
-    samples[n + 1] = tail_speeds(field, limits, comfort, pose, v, gap, FOLLOW)
-    slowest, fastest = samples[:n, 0].min(), samples[:n, 0].max()
-    for i in range(n + 2):
-        samples[i, 0] = min(max(samples[i, 0], slowest), fastest)
-        commands[i, 0] = slew(v, samples[i, 0], limits.v_accel, limits.v_brake, period)
-        commands[i, 1] = slew(omega, samples[i, 1], limits.omega_accel, limits.omega_brake, period)
-        refused[i] = refusal(
-            scene, rules, (pose, stop_from[0], stop_from[1]), (commands[i, 0], commands[i, 1])
-        )
-
-
-@njit(cache=True)
-def best_of(scene, rules, state, asked, buffers, scale, unseen):
-    """The best of the candidates by Eq. 9, or -1. ``asked`` is (n, whether it is ``bounded``).
-
-    Considers the candidates that are admissible or would have to pass moving obstacles; with
-    ``unseen`` those that were refused for unseen space. ``scale`` is (the cost-to-go now, the most
-    progress), both in metres.
-    """
-    limits, span = rules.limits, rules.span
-    samples, commands, holds, tails, terms, refused, score = buffers
-    n, bounded = asked
-    worst = np.zeros((len(scene.people.now), scene.people.mean.shape[1]))
-    found = np.zeros(5)
-    people = len(scene.people.now) > 0
-    best, best_score = -1, -np.inf
-    for j in range(n + 2):
-        i = j - 2 if j > 1 else n + j
-        score[i] = -np.inf
-        if refused[i] == NO_STOP or (refused[i] == HIDDEN) != unseen:
-            continue
-        sample, clear_for = (samples[i, 0], samples[i, 1]), 0.0
-        if refused[i] != ADMISSIBLE:
-            clear_for = scene.ahead + rules.period
-            clear_for += stopping_time(commands[i, 0], commands[i, 1], limits)
-        change = 0.0 if i == n else span.hysteresis
-        for kind in range(6):
-            tail, long = kind % 3, kind >= 3
-            held = span.long_steps if long else span.steps
-            if i == n:
-                held = max(1, round(scene.last.hold / span.step))
-                if kind != scene.last.tail:
-                    continue
-            elif i == n + 1:
-                held = 1
-                if kind != FOLLOW:
-                    continue
-            elif not worth_holding(sample, limits, tail, long, people):
-                continue
-            manoeuvre = (*sample, held, tail, clear_for)
-            enough = max(best_score, score[i]) + change if bounded else -np.inf
-            gauge = (scale[0], scale[1], enough)
-            outcome = future(scene, rules, state, manoeuvre, gauge, found, worst)
-            if outcome != TOUCHED:
-                refused[i] = ADMISSIBLE
-            if outcome == SCORED:
-                total = objective(weights_of(rules, scene), found) - change
-                if total > score[i]:
-                    score[i] = total
-                    terms[i] = found
-                    holds[i] = scene.last.hold if i == n else held * span.step
-                    tails[i] = tail
-        if score[i] > best_score:
-            best, best_score = i, score[i]
-    return best
-
-
-@njit(cache=True)
-def stops_in_the_way(scene, rules, state, scale):
-    """Whether a moving obstacle, as it is expected to go on, would touch a robot that stops now."""
-    worst = np.zeros((len(scene.people.now), scene.people.mean.shape[1]))
-    stop = (0.0, 0.0, 1, STOP, np.inf)
-    gauge = (scale[0], scale[1], -np.inf)
-    return future(scene, rules, state, stop, gauge, np.zeros(5), worst) == TOUCHED
 
 
 @njit(cache=True, nogil=True)
-def search(scene, rules, state, stop_from, n, buffers, bounded):
-    """Scores the admissible of ``n`` samples by Eq. 9 and returns the best, or -1.
+def search(scene, rules, state, stop_from, candidates, rows):
+    """Fill ``candidates`` and score them by Eq. 9; returns how many there are, and the best or -1.
 
-    Where a command does not rest in time before moving obstacles by their hard bound, a manoeuvre
-    that begins with it is admissible only if it is clear of them, as they are expected to go on, for
-    as long as a stop takes: from whatever comes later the robot can still be at rest. Where nothing
-    is admissible and a stop would end in the way of a moving obstacle, unseen space refuses nothing.
-
-    Two more candidates are written behind the samples: what the manoeuvre chosen last would do now
-    (n), looked at first, and following the cost-to-go at once (n + 1). Every change from the former
-    has to be worth something. ``buffers`` are samples, commands (n + 2, 2), holds in seconds and tails
-    (n + 2,), terms (n + 2, 5), refusals and scores (n + 2,). Where it is not ``bounded``, candidates
-    that cannot be the best are rolled out to their end, too. Stops are certified from the speeds
-    ``stop_from`` (v, omega).
+    Stops are certified from the state ``stop_from``. Where a command does not rest in time before
+    moving obstacles by their hard bound, a manoeuvre that begins with it is admissible only if it is
+    clear of them, as they are expected to go on, for as long as a stop takes: from whatever comes
+    later the robot can still be at rest. ``rows`` is room for a roll-out.
     """
-    limits, span = rules.limits, rules.span
-    pose, v, _ = state
-    begin = pose_value(scene.cost_to_go, limits, pose, v)
-    between = span.step * (span.horizon_steps // LOOKS)
-    most = 0.0
-    for look in range(1, LOOKS + 1):
-        most += min(farthest(max(v, 0.0), limits, look * between), begin) / LOOKS
-    scale = (begin, max(most, LEAST))
-    prepare(scene, rules, state, stop_from, n, buffers)
-    best = best_of(scene, rules, state, (n, bounded), buffers, scale, False)
-    if best < 0 and stops_in_the_way(scene, rules, state, scale):
-        best = best_of(scene, rules, state, (n, bounded), buffers, scale, True)
-    return best
+    gap = least_clearance(scene.distance_to_obstacle, rules.body, state.pose) - scene.margin
+    write(rows[0], state, gap, True)
+    here = state_value(scene.cost_to_go, rules.limits, rows[0])
+    start = Start(state, gap, here, most_progress(rules, state.v, here))
+    n = fill_candidates(scene, rules, start, candidates)
+    best, best_score = -1, -np.inf
+    for i in range(n):
+        candidate = candidates[i]
+        candidate.refused = refusal(scene, rules, stop_from, candidate)
+        candidate.score = -np.inf
+        if candidate.refused == ADMISSIBLE or candidate.refused == MOVING:
+            score(scene, rules, start, i, candidate, rows)
+        if candidate.score > best_score:
+            best, best_score = i, candidate.score
+    return n, best
+
+
+@inner
+def fill_candidates(scene, rules, start, candidates):
+    """Write speeds, holds and the commands of one period; returns the number of candidates."""
+    limits, last, state = rules.limits, scene.last, start.state
+    window = reachable(state, limits, possible(limits, min(scene.v_cap, limits.v_max)), rules.reach)
+    speeds, rates = np.empty(rules.v_samples + 3), np.empty(rules.omega_samples + 3)
+    n = SAMPLES
+    n_rates = spaced(window.low_omega, window.high_omega, rules.omega_samples, rates)
+    for v in speeds[: spaced(window.low_v, window.high_v, rules.v_samples, speeds)]:
+        for omega in rates[:n_rates]:
+            candidates[n].v, candidates[n].omega = v, omega
+            candidates[n].hold = rules.schedule.held * rules.schedule.period
+            n += 1
+    v, omega = last.v, last.omega
+    if last.hold < 0.5 * rules.schedule.period:
+        v, omega = tail_speeds(scene.cost_to_go, rules, state, start.gap, last.tail)
+    candidates[LAST].v, candidates[LAST].omega, candidates[LAST].hold = v, omega, last.hold
+    v, omega = tail_speeds(scene.cost_to_go, rules, state, start.gap, FOLLOW)
+    candidates[FOLLOW_NOW].v, candidates[FOLLOW_NOW].omega = v, omega
+    candidates[FOLLOW_NOW].hold = rules.schedule.period
+    for i in range(n):
+        candidate = candidates[i]
+        candidate.v = min(max(candidate.v, window.low_v), window.high_v)
+        candidate.command_v = slew(
+            state.v, candidate.v, limits.v_accel, limits.v_brake, rules.period
+        )
+        candidate.command_omega = slew(
+            state.omega, candidate.omega, limits.omega_accel, limits.omega_brake, rules.period
+        )
+    return n
+
+
+@inner
+def refusal(scene, rules, stop_from, candidate):
+    """ADMISSIBLE, or why the candidate's command is not; MOVING where it does not rest in time."""
+    command = candidate.command_v, candidate.command_omega
+    code = certified_stop(scene, rules, stop_from, command)
+    if code != ADMISSIBLE:
+        return code
+    return rests_in_time(scene, rules, stop_from, command)
+
+
+@inner
+def is_considered(i, candidate, tail, long, scene, limits):
+    """Whether a candidate is rolled out with a tail, and held for the ``long`` time.
+
+    Tails that do not follow the cost-to-go matter near moving obstacles, and a long hold only at
+    speed and nearly straight on.
+    """
+    if i == LAST:
+        return tail == scene.last.tail and not long
+    if i == FOLLOW_NOW:
+        return tail == FOLLOW and not long
+    if tail != FOLLOW and len(scene.moving.obstacles) == 0:
+        return False
+    if tail == BACK and (long or limits.v_min >= 0.0):
+        return False
+    return not long or (abs(candidate.v) >= SLOW * limits.v_max and abs(candidate.omega) <= SHARP)
+
+
+@inner
+def score(scene, rules, start, i, candidate, rows):
+    """Write the terms, the tail and the score of the candidate's best manoeuvre.
+
+    Every change from the manoeuvre chosen last has to be worth ``hysteresis``.
+    """
+    clear_for = 0.0
+    if candidate.refused == MOVING:
+        clear_for = scene.latency + rules.period
+        clear_for += stopping_time(candidate.command_v, candidate.command_omega, rules.limits)
+    change = 0.0 if i == LAST else rules.hysteresis
+    short_hold = candidate.hold
+    for kind in range(2 * len(TAILS)):
+        tail, long = kind % len(TAILS), kind >= len(TAILS)
+        if not is_considered(i, candidate, tail, long, scene, rules.limits):
+            continue
+        hold = rules.long_hold if long else short_hold
+        manoeuvre = Manoeuvre(candidate.v, candidate.omega, hold, tail)
+        if not roll_out(scene, rules, start, manoeuvre, rows):
+            continue
+        if clear_for > 0.0 and not passes_clear(scene.moving, rules, rows, clear_for):
+            continue
+        candidate.refused = ADMISSIBLE
+        terms = evaluate(scene, rules, start, manoeuvre, rows)
+        total = objective(scene, rules, terms) - change
+        if total > candidate.score:
+            candidate.score, candidate.tail, candidate.hold = total, tail, hold
+            candidate.heading, candidate.dist, candidate.vel = terms.heading, terms.dist, terms.vel
+            candidate.simi, candidate.risk = terms.simi, terms.risk
+
+
+@njit(cache=True)
+def is_admissible(scene, rules, stop_from, command):
+    """Whether a command (v, omega) from outside the search is admissible."""
+    if certified_stop(scene, rules, stop_from, command) != ADMISSIBLE:
+        return False
+    return rests_in_time(scene, rules, stop_from, command) == ADMISSIBLE

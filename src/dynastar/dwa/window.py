@@ -1,29 +1,45 @@
 """The dynamic window: which speeds can be reached (Eqs. 5 and 6), and its samples."""
 
-from dynastar.compiled import njit
+from typing import NamedTuple
+
+from dynastar.compiled import inner
 from dynastar.dwa.motion import slew
 
 
-@njit(cache=True)
-def dynamic_window(v, omega, limits, v_cap, span):
-    """Eqs. 5 and 6: the speeds within the limits that are reached in ``span`` seconds.
+class Window(NamedTuple):
+    """A rectangle of speeds: lowest and highest v (m/s) and omega (rad/s)."""
 
-    Returns (lowest v, highest v, lowest omega, highest omega); |v| is capped at ``v_cap``.
-    """
-    slowest, fastest = max(limits.v_min, -v_cap), max(v_cap, limits.v_min)
-    low_v = slew(v, slowest, limits.v_accel, limits.v_brake, span)
-    high_v = slew(v, fastest, limits.v_accel, limits.v_brake, span)
-    low_w = slew(omega, -limits.omega_max, limits.omega_accel, limits.omega_brake, span)
-    high_w = slew(omega, limits.omega_max, limits.omega_accel, limits.omega_brake, span)
-    return min(low_v, high_v), max(low_v, high_v), min(low_w, high_w), max(low_w, high_w)
+    low_v: float
+    high_v: float
+    low_omega: float
+    high_omega: float
 
 
-@njit(cache=True)
+@inner
+def possible(limits, v_cap):
+    """Eq. 5: the speeds within the robot's limits; |v| is capped at ``v_cap`` (m/s)."""
+    return Window(
+        max(limits.v_min, -v_cap), max(v_cap, limits.v_min), -limits.omega_max, limits.omega_max
+    )
+
+
+@inner
+def reachable(state, limits, possible, duration):
+    """Eq. 6: the part of the ``possible`` speeds that is reached in ``duration`` seconds."""
+    v, omega = state.v, state.omega
+    slower = slew(v, possible.low_v, limits.v_accel, limits.v_brake, duration)
+    faster = slew(v, possible.high_v, limits.v_accel, limits.v_brake, duration)
+    right = slew(omega, possible.low_omega, limits.omega_accel, limits.omega_brake, duration)
+    left = slew(omega, possible.high_omega, limits.omega_accel, limits.omega_brake, duration)
+    return Window(min(slower, faster), max(slower, faster), min(right, left), max(right, left))
+
+
+@inner
 def spaced(low, high, count, values):
-    """Writes about ``count`` values from low to high, both among them, and how many; denser round 0.
+    """Write about ``count`` values from low to high, both among them; returns how many there are.
 
-    Away from zero they grow with the square, so that slow and nearly straight motions can be told
-    apart; 0 is one of them where it lies between.
+    They are denser round 0, so that slow and nearly straight motions can be told apart: away from
+    zero they grow with the square. 0 is one of them where it lies between.
     """
     if high - low < 1e-9:
         values[0] = high
@@ -39,22 +55,3 @@ def spaced(low, high, count, values):
             values[k] = value
     values[k + 1] = high
     return k + 2
-
-
-@njit(cache=True)
-def cross(count_v, count_w, speeds, rates, samples):
-    """Writes each of the speeds with each of the turning rates to ``samples``; returns how many."""
-    k = 0
-    for i in range(count_v):
-        for j in range(count_w):
-            samples[k, 0], samples[k, 1] = speeds[i], rates[j]
-            k += 1
-    return k
-
-
-@njit(cache=True)
-def sample_window(window, speeds, rates, n_v, n_omega, samples):
-    """Writes the window's samples (v, omega) to ``samples`` (n, 2) and returns how many there are."""
-    count_v = spaced(window[0], window[1], n_v, speeds)
-    count_w = spaced(window[2], window[3], n_omega, rates)
-    return cross(count_v, count_w, speeds, rates, samples)

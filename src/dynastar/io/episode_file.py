@@ -115,7 +115,7 @@ def load_episode(path: str | Path) -> Episode:
     except KeyError as error:
         raise EpisodeError(f"{path}: the episode lacks {error}") from None
     except Exception as error:  # zipfile, zlib and numpy raise many kinds for damage
-        raise EpisodeError(f"{path}: the file is damaged or no episode ({error!s:.100})") from None
+        raise EpisodeError(f"{path}: damaged, or not an episode ({error!s:.100})") from None
 
 
 def _arrays(episode: Episode) -> Arrays:

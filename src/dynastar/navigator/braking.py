@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from dynastar.dwa.motion import coast
+from dynastar.dwa.motion import coast, state_at
 from dynastar.geometry import Pose2D, Twist
 from dynastar.navigator.status import RobotState
 from dynastar.robot import Limits, slew, stopping_time
@@ -84,14 +84,10 @@ class Commands:
                 durations.append(span)
         if not durations:
             return state.pose, state.twist
-        x, y, theta, v, omega = coast(
-            tuple(map(float, state.pose)),
-            tuple(map(float, state.twist)),
-            np.array(commands, dtype=np.float64),
-            np.array(durations),
-            self.limits,
-        )
-        return Pose2D(x, y, theta), Twist(v, omega)
+        now = state_at(*state.pose, *state.twist)
+        after, turned = coast(now, np.array(commands), np.array(durations), self.limits)
+        pose = Pose2D(after.pose.x, after.pose.y, state.pose.theta + turned)
+        return pose, Twist(after.v, after.omega)
 
     def carried_on(self, measured: Twist) -> Twist:
         """The twist from which the next command goes on: the last command, near the measured twist.

@@ -13,7 +13,7 @@ CELLS = 4  # of the maps, at least, to a robot's inscribed radius
 
 @self_checking
 class NavigatorConfig(NamedTuple):
-    """Everything a navigator can be told; the declared bounds are what its promise rests on."""
+    """The navigator's settings. The no-contact guarantee assumes the declared bounds."""
 
     period: Annotated[float, Field("time between two commands", "s", 0.01, 1.0)] = 0.1
     latency: Annotated[float, Field("delay until a command takes effect", "s", 0.0, 1.0)] = 0.0
@@ -37,8 +37,8 @@ class NavigatorConfig(NamedTuple):
     heading_tolerance: Annotated[
         float, Field("heading error at which a goal is reached", "rad", 0.01, 3.2)
     ] = 0.1
-    planning_resolution: Annotated[
-        float, Field("largest cell of the planning map", "m", 0.001, 10.0)
+    resolution: Annotated[
+        float, Field("largest cell of the maps that are planned and driven on", "m", 0.001, 1.0)
     ] = 0.05
     comfort: Annotated[
         float, Field("extra clearance of a plan where there is room", "m", 0.0, 5.0)
@@ -66,28 +66,33 @@ PRESETS: dict[str, NavigatorConfig] = {
 
 
 def fitted(config: NavigatorConfig, inscribed: float) -> NavigatorConfig:
-    """Cells down to half as large for a robot of a small ``inscribed`` radius (m), in as many.
+    """Shrink map cells, at most by half, until the inscribed radius (m) spans 4 of them.
 
-    Range noise and rounding close gaps by a cell or two, which a small robot needs.
+    The local map keeps its number of cells. Range noise and rounding close gaps by a cell or two,
+    which a small robot needs.
     """
+    share = min(1.0, max(inscribed / CELLS / config.resolution, 0.5))
     local = config.local_map
-    side = max(inscribed / CELLS, 0.5 * local.resolution)
-    share = min(1.0, side / local.resolution)
     return config._replace(
-        planning_resolution=min(config.planning_resolution, side),
-        local_map=local._replace(resolution=share * local.resolution, size=share * local.size),
+        resolution=share * config.resolution, local_map=local._replace(size=share * local.size)
     )
 
 
 def configured(
     preset: str = "default", overrides: Mapping[str, Any] | None = None
 ) -> NavigatorConfig:
-    """A preset with ``overrides``, nested tables by field name; ConfigError names what is wrong."""
+    """Returns a preset's settings with some replaced, nested tables by field name.
+
+    Raises ConfigError for an unknown preset or setting, or a value out of range.
+    """
     return changed(choose(preset, PRESETS, "preset"), overrides or {})
 
 
 def changed(config: NavigatorConfig, overrides: Mapping[str, Any]) -> NavigatorConfig:
-    """``config`` with ``overrides``, nested tables by field name; ConfigError names what is wrong."""
+    """Returns ``config`` with some settings replaced, nested tables by field name.
+
+    Raises ConfigError for an unknown setting, or a value out of range.
+    """
     return _merged(config, overrides, "")
 
 

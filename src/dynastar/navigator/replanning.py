@@ -1,15 +1,16 @@
 """The global path of a mission, and when another one is planned."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from dynastar.errors import GoalOccupied, NoPath, PlanningError
 from dynastar.geometry import Goal, Pose2D
+from dynastar.guidance import PathTarget
+from dynastar.navigator.aligned import turned, turned_path, turned_pose
 from dynastar.navigator.config import NavigatorConfig
-from dynastar.navigator.guidance import Lead
-from dynastar.navigator.mission import Mission
-from dynastar.navigator.planning_map import PlanningMap
+from dynastar.navigator.planners import Planners
 from dynastar.navigator.status import RobotState
 from dynastar.path import Path
 from dynastar.planning import Plan
@@ -18,32 +19,53 @@ REPLAN_PERIOD = 1.0  # s between two plans at the least
 REVIEW_PERIOD = 5.0  # s after which a better plan is looked for
 SPACING = 0.1  # m between the points of a given path that are looked at
 BETTER = 0.9  # of what is left of a path, up to which a new one replaces it
-CLEARLY = 0.99  # of the length of a path by Eq. 2, up to which an exact one replaces it
+CLEARLY_SHORTER = 0.99  # of the length of a path by Eq. 2, up to which an exact one replaces it
+
+
+class RouteEvent(NamedTuple):
+    """What happened to the route in a tick.
+
+    ``is_new`` tells of another path, ``recovery`` of a recovery and its detail. ``blocked`` is the reason
+    why no path is left, and ``error`` that of the planner.
+    """
+
+    is_new: bool = False
+    recovery: str = ""
+    blocked: str = ""
+    error: PlanningError | None = None
+
+
+KEPT, REPLACED = RouteEvent(), RouteEvent(is_new=True)
 
 
 class Route:
-    """The path that is driven, or None while there is none, and how far along it the robot is (m)."""
+    """The path that is driven, or None while there is none, and how far along it the robot is (m).
 
-    def __init__(
-        self, planning_map: PlanningMap, mission: Mission, config: NavigatorConfig
-    ) -> None:
-        self.planning_map, self.config = planning_map, config
-        self._mission = mission
+    The path and the robot's state are in the navigator's own frame; goals, given paths and plans are
+    in the map frame.
+    """
+
+    def __init__(self, planners: Planners, config: NavigatorConfig) -> None:
+        self.planners, self.config = planners, config
         self.path: Path | None = None
         self.s = 0.0
         self.plan: Plan | None = None
         self.plan_id, self.reason, self.replans = 0, "", 0
         self._given: Path | None = None
         self._planned = False  # for this goal
-        self._unsure = False  # whether an exact search may find a shorter path
+        self._unsure = False  # an exact search may find a shorter path
         self._planned_at = -math.inf
         self._no_path_since: float | None = None
         self._forgotten = 0
         self._stand = Path(np.zeros((1, 2)))  # where the robot waits while there is no path
 
-    def set_map(self, planning_map: PlanningMap) -> None:
+    def set_map(self, planners: Planners) -> None:
         """Another map: the next tick plans anew."""
-        self.planning_map, self.path = planning_map, None
+        self.planners, self.path, self._no_path_since = planners, None, None
+
+    @property
+    def _yaw(self) -> float:
+        return self.planners.planning_map.grid.frame.yaw
 
     def start_over(self, given: Path | None = None) -> None:
         """Another goal, or a path that is ``given`` and only followed."""
@@ -51,48 +73,63 @@ class Route:
         self._planned = self._unsure = False
         self._no_path_since, self._forgotten = None, 0
 
+    def drop(self) -> None:
+        """Forget the path and what was sensed, so that the next tick plans anew."""
+        self.planners.forget()
+        self.path = None
+
     def ends_within(self, distance: float) -> bool:
-        """Whether a given path has been followed but for ``distance`` (m); of a planned one always."""
+        """True if less than ``distance`` m of a given path are left. Always True for planned paths."""
         return self._given is None or (
             self.path is not None and self.path.length - self.s <= distance
         )
 
-    def lead(self, ahead: float) -> Lead:
-        """The path to follow, or the pose at which to wait for one; of a given path ``ahead`` m."""
-        if self.path is None:
-            return Lead(self._stand, 0.0, math.inf)
-        return Lead(self.path, self.s, math.inf if self._given is None else ahead)
+    def target(self, ahead: float) -> PathTarget:
+        """Path to follow this tick. A user-given path is limited to the next ``ahead`` m.
 
-    def keep(self, state: RobotState, changed: bool, reachable: bool) -> bool:
-        """Keeps a path that leads to the goal; whether it is a new one.
+        Without a path it is the waiting position.
+        """
+        if self.path is None:
+            return PathTarget(self._stand, 0.0)
+        return PathTarget(self.path, self.s, math.inf if self._given is None else ahead)
+
+    def update(self, state: RobotState, goal: Goal, changed: bool, reachable: bool) -> RouteEvent:
+        """Advance along, replan or drop the path for this tick.
 
         ``changed`` tells whether the planning map did, ``reachable`` whether a way leads along the path
-        out of the local map. Without any way left, the mission is blocked.
+        out of the local map.
         """
         since = state.stamp - self._planned_at
         if self.path is None:
             if self._given is not None:
                 self._join(self._given, state.pose)
-                return True
+                return REPLACED
             waits = self._no_path_since is not None and since < REPLAN_PERIOD
-            return not waits and self._replan(state, "a plan is needed")
+            return KEPT if waits else self._replan(state, goal, "a plan is needed")
         here = (state.pose.x, state.pose.y)
         self.s = self.path.project(*here, low=self.s - 0.5, high=self.s + 2.0)
         if self._unsure:
-            return self._improve(state)
+            return self._improve(state, goal)
         if since < REPLAN_PERIOD or self._given is not None:
-            return False
+            return KEPT
         if not reachable:
-            return self._replan(state, "the path is blocked nearby")
-        if changed:
-            rest = self.path.points[self.path.arc > self.s]
-            ahead = np.vstack([self.path.at(self.s), rest])
-            if len(rest) and self.planning_map.blocked_at(ahead) is not None:
-                return self._replan(state, "an obstacle blocks the path")
-        return since > REVIEW_PERIOD and self._replan(state, "a shorter path", BETTER)
+            return self._replan(state, goal, "the path is blocked nearby")
+        if changed and self._is_blocked():
+            return self._replan(state, goal, "an obstacle blocks the path")
+        if since > REVIEW_PERIOD:
+            return self._replan(state, goal, "a shorter path", BETTER)
+        return KEPT
+
+    def _is_blocked(self) -> bool:
+        """Whether the rest of the path is blocked on the planning map."""
+        assert self.path is not None
+        rest = self.path.points[self.path.arc > self.s]
+        ahead = np.vstack([self.path.at(self.s), rest])
+        return len(rest) > 0 and self.planners.blocked_at(turned(ahead, self._yaw)) is not None
 
     def _join(self, path: Path, pose: Pose2D) -> None:
-        """Follows a given path from where the robot is nearest, the first such place along it."""
+        """Follow a given path from where the robot is nearest, the first such place along it."""
+        path = turned_path(path, -self._yaw)
         if self.s == 0.0:
             points = path.resampled(0.0, path.length, SPACING)
             gap = np.hypot(points[:, 0] - pose.x, points[:, 1] - pose.y)
@@ -100,58 +137,58 @@ class Route:
             self.s = path.length * first / (len(points) - 1)
         self.path = path
 
-    def drop(self) -> None:
-        """Forgets the path and what was sensed, so that the next tick looks for a way anew."""
-        self.planning_map.forget()
-        self.path = None
-
-    def _replan(self, state: RobotState, reason: str, below: float = math.inf) -> bool:
-        """A new plan, taken if it is shorter than ``below`` times what is left of the present one."""
+    def _replan(
+        self, state: RobotState, goal: Goal, reason: str, below: float = math.inf
+    ) -> RouteEvent:
+        """Make a plan and take it if it is shorter than ``below`` times the rest of the path."""
         self._planned_at = state.stamp
+        is_review = below < math.inf
         try:
-            plan = self._plan(state, self.planning_map.exact if below < math.inf else "")
+            plan = self._plan(state, goal, self.planners.exact if is_review else "")
         except PlanningError as error:
-            if self.path is None or below == math.inf:
-                self._without_path(state, error)
-            return False
+            if self.path is not None and is_review:
+                return KEPT
+            return self._without_path(state, error)
         self._no_path_since = None
         if self.path is not None and plan.path.length > below * (self.path.length - self.s):
-            return False
+            return KEPT
         self.replans += self._planned
-        self._planned, self._unsure = True, below == math.inf and self.planning_map.exact != ""
+        self._planned, self._unsure = True, not is_review and self.planners.exact != ""
         self._take(plan, reason)
-        self._mission.error = None
-        return True
+        return REPLACED
 
-    def _improve(self, state: RobotState) -> bool:
-        """The shortest path in place of one by Eq. 2, if it is clearly shorter; whether it is."""
+    def _improve(self, state: RobotState, goal: Goal) -> RouteEvent:
+        """Replace the Eq. 2 path by the exact shortest path if that is at least 1 % shorter."""
         self._unsure = False
         assert self.path is not None
         try:
-            plan = self._plan(state, self.planning_map.exact)
+            plan = self._plan(state, goal, self.planners.exact)
         except PlanningError:
-            return False
-        if plan.path.length > CLEARLY * (self.path.length - self.s):
-            return False
+            return KEPT
+        if plan.path.length > CLEARLY_SHORTER * (self.path.length - self.s):
+            return KEPT
         self._take(plan, "an exact search found a shorter path")
-        return True
+        return REPLACED
 
-    def _plan(self, state: RobotState, planner: str) -> Plan:
-        goal: Goal = self._mission.goals[0]
-        here = (state.pose.x, state.pose.y)
-        return self.planning_map.plan(here, (goal.x, goal.y), True, planner)
+    def _plan(self, state: RobotState, goal: Goal, planner: str) -> Plan:
+        here = turned_pose(state.pose, self._yaw)
+        return self.planners.plan((here.x, here.y), (goal.x, goal.y), True, planner)
 
     def _take(self, plan: Plan, reason: str) -> None:
-        self.path, self.s = plan.path, 0.0
+        self.path, self.s = turned_path(plan.path, -self._yaw), 0.0
         self.plan, self.plan_id, self.reason = plan, self.plan_id + 1, reason
 
-    def _without_path(self, state: RobotState, error: PlanningError) -> None:
-        """No path on the planning map: what was sensed may be gone, so forget it and look again."""
-        mission = self._mission
-        sensed = isinstance(error, NoPath | GoalOccupied) and bool(self.planning_map.seen.any())
-        if not sensed or self._forgotten >= self.config.attempts:
-            mission.block(f"no way is left: {error}" if sensed else str(error), error)
-            return
+    def _without_path(self, state: RobotState, error: PlanningError) -> RouteEvent:
+        """No path on the planning map: what was sensed may be gone, so forget it and plan again.
+
+        The route is blocked where nothing was sensed, and after ``attempts`` to forget it.
+        """
+        seen = self.planners.planning_map.seen
+        sensed = isinstance(error, NoPath | GoalOccupied) and bool(seen.any())
+        if not sensed:
+            return RouteEvent(blocked=str(error), error=error)
+        if self._forgotten >= self.config.attempts:
+            return RouteEvent(blocked=f"no way is left: {error}", error=error)
         self.path = None
         if self._no_path_since is None:
             self._no_path_since = state.stamp
@@ -159,5 +196,6 @@ class Route:
         elif state.stamp - self._no_path_since > self.config.stuck_time:
             self._forgotten += 1
             self._no_path_since = None
-            self.planning_map.forget()
-            mission.recover(state.stamp, "forget what was sensed: no way is left")
+            self.planners.forget()
+            return RouteEvent(recovery="forget what was sensed: no way is left")
+        return KEPT

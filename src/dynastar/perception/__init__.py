@@ -2,10 +2,11 @@
 
 from dynastar.perception.detection import Known
 from dynastar.perception.local_map import LocalMap, LocalMapConfig
+from dynastar.perception.planning_map import PlanningMap
 from dynastar.perception.prediction import PredictionConfig
 from dynastar.perception.tracking import MovingObstacle, Track, Tracker, TrackerConfig
 
 __all__ = [
-    "Known", "LocalMap", "LocalMapConfig", "MovingObstacle", "PredictionConfig", "Track", "Tracker",
-    "TrackerConfig",
+    "Known", "LocalMap", "LocalMapConfig", "MovingObstacle", "PlanningMap", "PredictionConfig", "Track",
+    "Tracker", "TrackerConfig",
 ]  # fmt: skip

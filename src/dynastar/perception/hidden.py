@@ -13,6 +13,8 @@ import numpy.typing as npt
 
 from dynastar.clearance import FAR
 from dynastar.compiled import njit
+from dynastar.field import Field
+from dynastar.perception.local_map import picked
 
 Floats = npt.NDArray[np.float32]
 
@@ -24,21 +26,28 @@ FACTOR = 2  # cells of the local map to one of this field
 class Hidden(NamedTuple):
     """Distances (m) to the nearest centre of a possible body, over the local map."""
 
-    distance: Floats
-    x0: float
-    y0: float
-    resolution: float
+    distance: Field
     radius: float
     speed: float
     slack: float
 
 
 class HiddenSpace:
-    """Keeps until when every cell of the local map is cleared of unseen bodies."""
+    """Keeps until when every cell of the local map is cleared of unseen bodies.
 
-    def __init__(self, cells: int, resolution: float, speed: float) -> None:
+    ``cells`` are those along a side of the local map; ``resolution`` (m) and ``corner`` (x, y) are its
+    lattice's.
+    """
+
+    def __init__(
+        self,
+        cells: int,
+        resolution: float,
+        speed: float,
+        corner: tuple[float, float] = (0.0, 0.0),
+    ) -> None:
         n = cells // FACTOR
-        self.speed = speed
+        self.speed, self._lattice_corner = speed, corner
         self._resolution = resolution * FACTOR
         self._cleared_until = np.full((n, n), -np.inf)
         self._distance = np.full((n, n), 0.0, np.float32)
@@ -64,7 +73,7 @@ class HiddenSpace:
 
         ``corner`` is the lattice index (row, column) of the local map's first cell.
         """
-        self._shift(corner)
+        self._move_to(corner)
         cleared_until, a = self._cleared_until, self._resolution
         seen, uncleared, soft = self._masks
         sort_cells(seen_free, occupied, cleared_until, now, seen, uncleared, soft)
@@ -75,29 +84,19 @@ class HiddenSpace:
         else:
             self._distance = np.full(cleared_until.shape, FAR, np.float32)
         keep_clear(cleared_until, seen, self._distance, HIDDEN_RADIUS, now, max(self.speed, 1e-6))
-        return Hidden(
-            np.ascontiguousarray(self._distance, np.float32),
-            corner[1] * a / FACTOR,
-            corner[0] * a / FACTOR,
-            a,
-            HIDDEN_RADIUS,
-            self.speed,
-            SLACK,
-        )
+        distance = np.ascontiguousarray(self._distance, np.float32)
+        (x0, y0), (row, column) = self._lattice_corner, corner
+        field = Field(distance, x0 + column * a / FACTOR, y0 + row * a / FACTOR, a)
+        return Hidden(field, HIDDEN_RADIUS, self.speed, SLACK)
 
-    def _shift(self, corner: tuple[int, int]) -> None:
-        down = (corner[0] - self._corner[0]) // FACTOR
-        right = (corner[1] - self._corner[1]) // FACTOR
-        self._corner = corner
-        if down == 0 and right == 0:
-            return
+    def _move_to(self, corner: tuple[int, int]) -> None:
+        """Moves the window to a corner in cells of the local map; what comes in is not cleared."""
         n = len(self._cleared_until)
-        moved = np.full((n, n), -np.inf)
-        if abs(down) < n and abs(right) < n:
-            to = np.s_[max(-down, 0) : n - max(down, 0), max(-right, 0) : n - max(right, 0)]
-            of = np.s_[max(down, 0) : n - max(-down, 0), max(right, 0) : n - max(-right, 0)]
-            moved[to] = self._cleared_until[of]
-        self._cleared_until = moved
+        up, right = ((a - b) // FACTOR for a, b in zip(corner, self._corner, strict=True))
+        if (up, right) != (0, 0):
+            rows, columns = np.arange(n) + up, np.arange(n) + right
+            self._cleared_until = picked(self._cleared_until, rows, columns, -np.inf)
+        self._corner = corner
 
 
 @njit(cache=True)
@@ -128,8 +127,9 @@ def find_bodies(near_cleared, near_solid, radius, nobody):
     more than a cell further away than what is solid.
     """
     found = False
-    for row in range(nobody.shape[0]):
-        for column in range(nobody.shape[1]):
+    rows, columns = nobody.shape
+    for row in range(rows):
+        for column in range(columns):
             cleared, solid = near_cleared[row, column], near_solid[row, column]
             body = cleared >= radius and solid >= radius and cleared <= solid + 1.0
             nobody[row, column] = not body
@@ -140,8 +140,9 @@ def find_bodies(near_cleared, near_solid, radius, nobody):
 @njit(cache=True)
 def keep_clear(cleared_until, seen, distance, radius, now, speed):
     """Notes until when (s) nobody can have come to the cells that were just seen."""
-    for row in range(seen.shape[0]):
-        for column in range(seen.shape[1]):
+    rows, columns = seen.shape
+    for row in range(rows):
+        for column in range(columns):
             if seen[row, column]:
                 reach = max(distance[row, column] - radius, 0.0)
                 cleared_until[row, column] = now + reach / speed

@@ -4,17 +4,9 @@ import math
 
 import numpy as np
 
-from dynastar.compiled import njit
+from dynastar.compiled import inner, njit
 
 NEVER = -1e18
-
-# arctan(q) / q for q from 0 to 1, a polynomial in q^2 (least squares at Chebyshev's points).
-ARCTAN = (
-    0.9999999937572817, -0.3333313797589671, 0.1999369407969238, -0.14211102809968626,
-    0.10667470051931369, -0.07556856635617266, 0.04327764435842116, -0.016412774889647392,
-    0.0029326465686708813,
-)  # fmt: skip
-ARCTAN_ERROR = 1.5e-8  # rad
 
 
 @njit(cache=True)
@@ -59,78 +51,64 @@ def free_ranges(ranges, limits, increment, full_circle, errors, narrowest):
     return low
 
 
-@njit(cache=True, inline="always")
-def bearing(dx, dy):
-    """atan2(dy, dx) without branches, right to ``ARCTAN_ERROR``; 0 at the origin."""
-    up, along = abs(dy), abs(dx)
-    q = min(along, up) / max(max(along, up), 1e-12)
-    s = q * q
-    series = ARCTAN[8]
-    for i in range(7, -1, -1):
-        series = ARCTAN[i] + s * series
-    angle = q * series
-    angle = 0.5 * math.pi - angle if up > along else angle
-    angle = math.pi - angle if dx < 0.0 else angle
-    return -angle if dy < 0.0 else angle
+@inner
+def crossings(gaps, first, increment, side):
+    """Where beams cross a row 1 m above (side 1) or below (-1) the sensor, from left to right.
 
-
-@njit(cache=True, fastmath={"nnan", "nsz", "contract"}, error_model="numpy")
-def beams_of(offset, resolution, first, per_step, period, last, turns):
-    """The beams, in fractions, that a row of cells lies at: ``offset`` (dy, left) m from the sensor.
-
-    ``first`` is the first beam's angle, ``period`` a whole turn in beams; what is beyond ``last`` is
-    that. Without branches, so that several cells go at once; the arctangent is right to ``ARCTAN_ERROR``.
+    Returns the crossings (k + 1,) in m from the sensor, the last at infinity, and the squared gaps
+    (k + 1,) that end at each of them. ``first`` is the first beam's angle.
     """
-    dy, left = offset
-    per_period = 1.0 / period
-    for k in range(turns.size):
-        dx = left + np.float64(np.int32(k)) * resolution
-        turn = (bearing(dx, dy) - first) * per_step
-        turns[k] = min(turn - period * math.floor(turn * per_period), last)
+    n = len(gaps)
+    turn = -1 if side * increment > 0.0 else 1  # of the beams' indices, from left to right
+    start, count = 0 if turn > 0 else n - 1, 0  # a side without beams is all in the last gap
+    at = np.full(n, np.inf)
+    for i in range(n):
+        angle = first + i * increment
+        height = side * math.sin(angle)
+        if height > 0.0:
+            count += 1
+            at[i] = math.cos(angle) / height
+            start = i if at[i] < at[start] else start
+    ends, squares = np.full(count + 1, np.inf), np.empty(count + 1)
+    for k in range(count + 1):
+        i = (start + turn * k) % n
+        if k < count:
+            ends[k] = at[i]
+        squares[k] = gaps[i - 1 if turn > 0 else i] ** 2
+    return ends, squares
 
 
 @njit(cache=True)
-def mark_free(free_at, frame, gaps, beams, full_circle, sensor, now):
+def mark_free(free_at, frame, gaps, beams, sensor, now):
     """Stamps ``now`` into ``free_at`` for every cell whose centre lies in observed-free space.
 
-    ``frame`` is the window's (resolution, x0, y0), ``beams`` their first angle and increment,
-    ``sensor`` its pose in the map frame. A cell that is on the verge of two gaps counts by the smaller.
+    ``frame`` is the window's (resolution, x0, y0), ``gaps`` (n,) are the ranges (m) from one beam to the
+    next, the last one to the first beam. ``beams`` are their first angle and increment, ``sensor`` is
+    its pose (x, y, theta).
     """
     resolution, x0, y0 = frame
     angle_min, increment = beams
     x, y, theta = sensor
-    rows, columns = free_at.shape
-    n, far = len(gaps), gaps.max()
-    if increment == 0.0 or far <= 0.0:
-        return
-    squares = np.full(n + 3, -1.0)  # of the gap after each beam, from one before the first
-    for i in range(n):
-        if gaps[i] > 0.0:
-            squares[i + 1] = gaps[i] * gaps[i]
-    if full_circle:
-        squares[0] = squares[n + 1] = squares[n]
-    period = 2.0 * math.pi / abs(increment)
-    verge = min(1e-4 + 2.0 * ARCTAN_ERROR / abs(increment), 0.5)  # beams
-    turns = np.empty(columns)
-    for row in range(rows):
+    far = gaps.max()
+    above = crossings(gaps, theta + angle_min, increment, 1.0)
+    below = crossings(gaps, theta + angle_min, increment, -1.0)
+    for row in range(free_at.shape[0]):
         dy = y0 + (row + 0.5) * resolution - y
         if abs(dy) > far:
             continue
         half = math.sqrt(far * far - dy * dy)
         low = max(0, int(math.floor((x - half - x0) / resolution)))
-        count = min(columns - 1, int(math.floor((x + half - x0) / resolution))) - low + 1
-        if count <= 0:
-            continue
-        left = x0 + (low + 0.5) * resolution - x
-        here = turns[:count]
-        first, offset = theta + angle_min, (dy, left)
-        beams_of(offset, resolution, first, 1.0 / increment, period, n + 0.5, here)
-        cells = free_at[row, low : low + count]
-        for k in range(count):
-            dx = left + k * resolution
-            one, other = np.uint64(here[k] + (1.0 - verge)), np.uint64(here[k] + (1.0 + verge))
-            inside = dx * dx + dy * dy <= min(squares[one], squares[other])
-            cells[k] = now if inside else cells[k]
+        high = min(free_at.shape[1] - 1, int(math.floor((x + half - x0) / resolution)))
+        ends, squares = above if dy > 0.0 else below
+        height = max(abs(dy), 1e-9)
+        cells, k, end = free_at[row], 0, ends[0] * height
+        for column in range(low, high + 1):
+            dx = x0 + (column + 0.5) * resolution - x
+            while dx > end:
+                k += 1
+                end = ends[k] * height
+            if dx * dx + dy * dy < squares[k]:
+                cells[column] = now
 
 
 @njit(cache=True)
@@ -205,19 +183,6 @@ def compose_states(free_at, hit_at, barred, horizon, states, open_):
             row_open[column] = is_free & (not bars[column])
     open_[0], open_[rows - 1] = 0, 0
     open_[:, 0], open_[:, columns - 1] = 0, 0
-
-
-@njit(cache=True)
-def shift(source, target, rows, columns, fill):
-    """Moves a window by (rows, columns) cells: target[r, c] = source[r + rows, c + columns]."""
-    height, width = source.shape
-    for row in range(height):
-        for column in range(width):
-            r, c = row + rows, column + columns
-            if 0 <= r < height and 0 <= c < width:
-                target[row, column] = source[r, c]
-            else:
-                target[row, column] = fill
 
 
 @njit(cache=True)

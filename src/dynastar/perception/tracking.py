@@ -1,23 +1,21 @@
-"""Tracking of moving obstacles: which of the things that scans show move, and how."""
+"""Tracking: which of the obstacles that scans show move, and how."""
 
 import math
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from dynastar.config import Field, self_checking
-from dynastar.geometry import Pose2D
-from dynastar.grid import GridFrame
 from dynastar.perception import detection
 from dynastar.perception import tracking_kernels as kernels
-from dynastar.perception.detection import Known, Sensor
-from dynastar.perception.local_map import LocalMap, Points
+from dynastar.perception.detection import Known, Records
 from dynastar.perception.past_scans import PastScans
-from dynastar.scan import LaserScan
+from dynastar.perception.placed_scan import PlacedScan
 
 TrackState = Literal["tentative", "confirmed", "stopped", "occluded"]
-NOTHING_KNOWN = Known(np.zeros((1, 1), np.bool_), GridFrame(1.0))
+STATES = "tentative", "confirmed", "stopped"  # of the kernels' tracks that are in sight
+Disc = tuple[float, float, float]  # x, y, radius (m)
 
 
 @self_checking
@@ -44,9 +42,8 @@ class MovingObstacle(NamedTuple):
 class Track(NamedTuple):
     """A disc followed over time, in the map frame: centre (m), velocity (m/s), radius (m).
 
-    ``position_sd`` (m) and ``velocity_sd`` (m/s) are standard deviations along each axis; ``age``,
-    ``unseen`` and ``still`` the seconds since it was first seen, since it was last seen, and that it
-    has stood still (0 while it moves).
+    ``position_sd`` (m) and ``velocity_sd`` (m/s) are standard deviations along each axis. ``age`` and
+    ``unseen`` are the seconds since it was first and last seen, ``still`` those that it has been at rest.
     """
 
     id: int
@@ -64,111 +61,77 @@ class Track(NamedTuple):
 
 
 class Tracker:
-    """Follows things from scan to scan, within ``range_error`` (m), and finds out which of them move.
+    """Tracks obstacles from scan to scan, and finds out which of them move.
 
     ``tracks``, as of the last scan, are "tentative" (seems to move, not yet for certain), "confirmed"
-    (moves), "stopped" (moved, and stands now) or "occluded" (moved, and is out of sight). What was
-    only ever seen to stand is not among them.
+    (moves), "stopped" (moved, and is at rest now) or "occluded" (moved, and is out of sight). Obstacles
+    that were at rest whenever they were seen are not listed.
     """
 
-    def __init__(
-        self,
-        config: TrackerConfig = TrackerConfig(),
-        range_error: float = 0.0,
-        heading_error: float = 0.0,
-    ) -> None:
+    def __init__(self, config: TrackerConfig = TrackerConfig()) -> None:
         self.config = config
-        self._rows = np.zeros((0, kernels.COLUMNS))
-        self._stamp = -math.inf
-        self._next_id = 0
-        self._past = PastScans(range_error, heading_error)
-        self.tracks: tuple[Track, ...] = ()
+        self._stamp, self._next_id = -math.inf, 0
+        self.forget()
 
     def forget(self) -> None:
-        """Drops all tracks."""
-        self._rows = self._rows[:0]
-        self._past.forget()
-        self.tracks = ()
+        """Drop all tracks and past scans."""
+        self.tracks: tuple[Track, ...] = ()
+        self._records = np.zeros(0, kernels.TRACK)
+        self._past = PastScans()
 
-    def update(
-        self,
-        scan: LaserScan,
-        sensor: Pose2D,
-        points: Points,
-        beams: npt.NDArray[np.int64],
-        local_map: LocalMap,
-        known: Known = NOTHING_KNOWN,
-    ) -> npt.NDArray[np.bool_]:
-        """Takes in one scan before the local map does; returns which ``points`` (n,) move.
+    def update(self, scan: PlacedScan, known: Known) -> tuple[npt.NDArray[np.bool_], list[Disc]]:
+        """Update the tracks with one scan. Returns what of it moves, and what to erase from a map.
 
-        ``points`` (n, 2) are the ends of ``beams`` (n,) in the map frame. What is found to move is
-        erased from the local map, back to where it was first seen or last stood.
+        That is which of the scan's points (k,) lie on a moving obstacle, and the discs where obstacles
+        just found to move have been since they were first seen or last at rest.
         """
-        config, now = self.config, max(scan.stamp, self._stamp)
+        config, tracks, now = self.config, self._records, max(scan.sensor.stamp, self._stamp)
         dt = now - self._stamp if math.isfinite(self._stamp) else 0.0
         self._stamp = now
-        step = abs(scan.angle_increment)
-        view = Sensor(
-            float(sensor.x), float(sensor.y), step, len(scan.ranges), int(scan.full_circle)
+        sensor, space = scan.sensor._replace(stamp=now), self._past.space()
+        kernels.predict(tracks, dt, now)
+        groups, points = detection.find_groups(
+            detection.points_of(scan), sensor, known, space, tracks, config.widest
         )
-        before = self._past.since(-math.inf)
-        lately = before._replace(since=now - kernels.MISSED)
-        kernels.predict(self._rows, dt)
-        discs = kernels.expected_discs(self._rows, now)
-        owned = detection.find_owners(points, view, known, before, discs)
-        groups = detection.find_groups(points, beams, view, owned, discs, config.widest)
-        taken = kernels.associate(self._rows, groups, now)
-        kernels.correct(self._rows, groups, points, view, now)
-        kernels.hide(self._rows, dt, now, lately, config.occluded_time)
-        for row in self._rows[kernels.judge(self._rows, now, lately, config.fastest)]:
-            self._erase(row, local_map)
-        moving = kernels.points_on(points, owned[0], self._rows, groups)
-        kept = self._rows[self._rows[:, kernels.T_STATE] != kernels.LOST]
-        new = groups[~taken & (groups[:, detection.G_TRACK] < 0.0)]
-        self._rows = np.vstack([kept, self._born(new, now)]) if len(new) else kept
-        self.tracks = tuple(self._listed())
-        self._past.add(scan, sensor)
-        return moving
+        kernels.update(tracks, groups, points, sensor, space, config, dt)
+        moving = np.isin(scan.beams, points["beam"][points["moving"]])
+        left = [disc for track in tracks[tracks["started"]] for disc in _discs_left(track)]
+        self._past.add(scan)
+        self._replace_lost(groups[~groups["taken"] & (groups["owner"] == detection.UNOWNED)])
+        self.tracks = self._listed()
+        return moving, left
 
-    def _born(self, groups: npt.NDArray[np.float64], now: float) -> npt.NDArray[np.float64]:
-        born = np.zeros((len(groups), kernels.COLUMNS))
-        born[:, [kernels.T_X, kernels.T_Y]] = groups[:, [detection.G_X, detection.G_Y]]
-        born[:, [kernels.T_X0, kernels.T_Y0]] = groups[:, [detection.G_X, detection.G_Y]]
-        born[:, kernels.T_RADIUS] = groups[:, detection.G_RADIUS]
-        born[:, kernels.T_FREE] = groups[:, detection.G_FREE]
-        hidden = groups[:, [detection.G_HIDDEN_FIRST, detection.G_HIDDEN_LAST]]
-        born[:, kernels.T_ENDS] = hidden @ (1.0, 2.0)
-        born[:, kernels.T_PP] = kernels.ERROR**2
-        born[:, kernels.T_VV] = kernels.NEW_SPEED**2
-        born[:, [kernels.T_BORN, kernels.T_SEEN, kernels.T_MOVED]] = now
-        born[:, kernels.T_ID] = np.arange(self._next_id, self._next_id + len(groups))
-        self._next_id += len(groups)
-        return born
+    def _replace_lost(self, groups: Records) -> None:
+        """Drop the lost tracks, and begin a new one for each of ``groups``."""
+        kept = self._records[self._records["state"] != kernels.LOST]
+        self._records = np.zeros(len(kept) + len(groups), kernels.TRACK)
+        self._records[: len(kept)], new = kept, self._records[len(kept) :]
+        for name in ("x", "y", "radius", "free", "hidden"):
+            new[name] = groups[name]
+        new["start_x"], new["start_y"] = groups["x"], groups["y"]
+        new["var_x"], new["var_v"] = kernels.ERROR**2, kernels.NEW_SPEED**2
+        new["born"] = new["seen"] = new["moved"] = self._stamp
+        new["id"] = self._next_id + np.arange(len(new))
+        self._next_id += len(new)
 
-    def _listed(self) -> list[Track]:
-        now, rows = self._stamp, self._rows
-        known = rows[:, kernels.T_STATE] != kernels.TENTATIVE
-        speed = np.hypot(rows[:, kernels.T_VX], rows[:, kernels.T_VY])
-        unsure = kernels.SURE * np.sqrt(rows[:, kernels.T_VV])
-        fast = speed > np.maximum(kernels.REST_SPEED, unsure)
-        listed = []
-        for row in rows[known | fast].tolist():
-            x, y, vx, vy = row[kernels.T_X : kernels.T_VY + 1]
-            unseen = now - row[kernels.T_SEEN]
-            state: TrackState = "tentative"
-            if row[kernels.T_STATE] != kernels.TENTATIVE:
-                state = "confirmed" if row[kernels.T_STATE] == kernels.CONFIRMED else "stopped"
-                state = "occluded" if unseen > kernels.MISSED else state
-            still = 0.0 if math.hypot(vx, vy) > kernels.REST_SPEED else now - row[kernels.T_MOVED]
-            sds = math.sqrt(row[kernels.T_PP]), math.sqrt(row[kernels.T_VV])
-            shape = x, y, vx, vy, row[kernels.T_RADIUS], *sds
-            age = now - row[kernels.T_BORN]
-            listed.append(Track(int(row[kernels.T_ID]), *shape, state, age, unseen, still))
-        return listed
+    def _listed(self) -> tuple[Track, ...]:
+        tracks, now = self._records, self._stamp
+        speed, unsure = np.hypot(tracks["vx"], tracks["vy"]), np.sqrt(tracks["var_v"])
+        fast = speed > np.maximum(kernels.REST_SPEED, kernels.SURE * unsure)
+        shown = fast | (tracks["state"] != kernels.TENTATIVE)
+        tracks, speed = tracks[shown], speed[shown]
+        states, unseen = np.array(STATES)[tracks["state"]], now - tracks["seen"]
+        states[(tracks["state"] != kernels.TENTATIVE) & (unseen > kernels.MISSED)] = "occluded"
+        still = np.where(speed > kernels.REST_SPEED, 0.0, now - tracks["moved"])
+        columns = [tracks[name] for name in ("id", "x", "y", "vx", "vy", "radius")]
+        columns += [np.sqrt(tracks["var_x"]), np.sqrt(tracks["var_v"])]
+        columns += [states, now - tracks["born"], unseen, still]
+        return tuple(map(Track, *(column.tolist() for column in columns)))
 
-    @staticmethod
-    def _erase(row: npt.NDArray[np.float64], local_map: LocalMap) -> None:
-        x0, y0, x, y = row[[kernels.T_X0, kernels.T_Y0, kernels.T_X, kernels.T_Y]]
-        for fraction in np.linspace(0.0, 1.0, 2 + int(math.hypot(x - x0, y - y0) / 0.1)):
-            at = (x0 + fraction * (x - x0), y0 + fraction * (y - y0))
-            local_map.erase(*at, row[kernels.T_RADIUS] + kernels.MARGIN)
+
+def _discs_left(track: Any) -> list[Disc]:
+    """The discs, 0.1 m apart, that a track has passed since it was first seen or last at rest."""
+    x, y, radius = track["start_x"], track["start_y"], track["radius"] + kernels.MARGIN
+    dx, dy = track["x"] - x, track["y"] - y
+    parts = np.linspace(0.0, 1.0, 2 + int(math.hypot(dx, dy) / 0.1))
+    return [(float(x + part * dx), float(y + part * dy), float(radius)) for part in parts]

@@ -3,7 +3,14 @@
 from dynastar.planning.any_angle import straighten
 from dynastar.planning.external import Planner, plan_by
 from dynastar.planning.heuristic import PLANNERS, HeuristicConfig
-from dynastar.planning.planner import GridPlanner, Plan, PlannerConfig, plan, warm_up, warm_up_all
+from dynastar.planning.planner import (
+    GridPlanner,
+    Plan,
+    PlannerConfig,
+    plan,
+    warm_up,
+    warm_up_default,
+)
 from dynastar.planning.search import ALGORITHMS, SearchGrid, SearchResult
 from dynastar.planning.segments import segment_clear
 from dynastar.planning.smoothing import smooth
@@ -24,5 +31,5 @@ __all__ = [
     "smooth",
     "straighten",
     "warm_up",
-    "warm_up_all",
+    "warm_up_default",
 ]

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.compiled import leading_zeros, njit, trailing_zeros
+from dynastar.compiled import inner, leading_zeros, njit, trailing_zeros
 from dynastar.planning.bucket_kernel import ALL, ONE
 from dynastar.planning.heap_kernel import F_SHIFT, SERIAL_BITS, pop, push
 from dynastar.planning.labels import (
@@ -137,7 +137,7 @@ def shorter(label: int, tag: int, g: int, d: int) -> int:
     return label
 
 
-@njit(cache=True)
+@inner
 def enter(
     labels: Ints, tag: int, node: int, g: int, d: int, h: int,
     heap: Ints, nodes: npt.NDArray[np.int32], size: int, serial: int,

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.compiled import njit
+from dynastar.compiled import inner, njit
 
 Bytes = npt.NDArray[np.uint8]
 
@@ -21,7 +21,7 @@ def norm(y: float, x: float) -> float:
     return math.sqrt(y * y + x * x)
 
 
-@njit(cache=True)
+@inner
 def crosses_box(
     ay: float, ax: float, by: float, bx: float,
     low_y: float, low_x: float, high_y: float, high_x: float,
@@ -39,7 +39,7 @@ def crosses_box(
     return enter <= leave
 
 
-@njit(cache=True)
+@inner
 def gap_to_point(ay: float, ax: float, by: float, bx: float, y: float, x: float) -> float:
     """Distance from the segment a - b to a point."""
     dy, dx = by - ay, bx - ax
@@ -50,7 +50,7 @@ def gap_to_point(ay: float, ax: float, by: float, bx: float, y: float, x: float)
     return norm(ay + t * dy - y, ax + t * dx - x)
 
 
-@njit(cache=True)
+@inner
 def gap_to_cell(ay: float, ax: float, by: float, bx: float, r: float, c: float) -> float:
     """Distance from the segment a - b to the square of a cell, 0 if they meet."""
     if crosses_box(ay, ax, by, bx, r, c, r + 1.0, c + 1.0):
@@ -64,7 +64,7 @@ def gap_to_cell(ay: float, ax: float, by: float, bx: float, r: float, c: float) 
     return gap
 
 
-@njit(cache=True)
+@inner
 def point_is_stopped(
     blocked: Bytes, ay: float, ax: float, by: float, bx: float, r: int, c: int
 ) -> bool:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.compiled import njit
+from dynastar.compiled import inner, njit
 from dynastar.planning.segments import Bytes, is_clear, mask_bytes, norm
 from dynastar.planning.taut_kernel import pulled_bend
 
@@ -71,7 +71,7 @@ def leave_out(
     return count
 
 
-@njit(cache=True)
+@inner
 def pull_taut(blocked: Bytes, points: Points, radius: float) -> Points:
     """Pull every corner, round after round, until none gets shorter.
 
@@ -85,7 +85,8 @@ def pull_taut(blocked: Bytes, points: Points, radius: float) -> Points:
     kept = np.empty(most, np.bool_)
     n = bends(points, line)
     for _ in range(ROUNDS):
-        pulled[0], fresh[0], kept[0] = line[0], False, moved[0]
+        pulled[0, 0], pulled[0, 1] = line[0, 0], line[0, 1]
+        fresh[0], kept[0] = False, moved[0]
         count, changed, straightened = 1, False, 0
         for i in range(1, n):
             y, x = line[i, 0], line[i, 1]
@@ -122,7 +123,7 @@ def pull_taut(blocked: Bytes, points: Points, radius: float) -> Points:
     return line[:n].copy()
 
 
-@njit(cache=True)
+@inner
 def join_close(blocked: Bytes, points: Points, radius: float) -> Points:
     """Replace two corners closer than ``FINEST`` by the one where the lines to them meet, if clear."""
     line = points.copy()
@@ -134,52 +135,61 @@ def join_close(blocked: Bytes, points: Points, radius: float) -> Points:
             and i + 1 < len(points)
             and gap(points, i, line[count - 1, 0], line[count - 1, 1]) < FINEST
         ):
-            a, b, c, d = line[count - 2], line[count - 1], points[i], points[i + 1]
-            u, t = b - a, c - d
-            across = u[1] * t[0] - u[0] * t[1]
+            ay, ax = line[count - 2, 0], line[count - 2, 1]
+            dy, dx = points[i + 1, 0], points[i + 1, 1]
+            uy, ux = line[count - 1, 0] - ay, line[count - 1, 1] - ax
+            ty, tx = points[i, 0] - dy, points[i, 1] - dx
+            across = ux * ty - uy * tx
             if across != 0.0:
-                s = ((d[1] - a[1]) * t[0] - (d[0] - a[0]) * t[1]) / across
-                y, x = a[0] + s * u[0], a[1] + s * u[1]
+                s = ((dx - ax) * ty - (dy - ay) * tx) / across
+                y, x = ay + s * uy, ax + s * ux
                 if (
                     s > 0.0
                     and gap(line, count - 1, y, x) < FINEST
-                    and is_clear(blocked, a[0], a[1], y, x, radius)
-                    and is_clear(blocked, y, x, d[0], d[1], radius)
+                    and is_clear(blocked, ay, ax, y, x, radius)
+                    and is_clear(blocked, y, x, dy, dx, radius)
                 ):
                     line[count - 1, 0], line[count - 1, 1] = y, x
                     i += 1
                     continue
-        line[count] = points[i]
+        line[count, 0], line[count, 1] = points[i, 0], points[i, 1]
         count += 1
         i += 1
     return line[:count].copy()
 
 
-@njit(cache=True)
+@inner
 def bevel(blocked: Bytes, points: Points, radius: float, largest: float) -> Points:
     """Cut every corner once, up to ``largest`` cells from it, as far as the disc can follow."""
     result = np.empty((2 * len(points), 2))
-    result[0] = points[0]
-    count = 1
+    count = append(result, 0, points[0, 0], points[0, 1])
     for i in range(1, len(points) - 1):
-        corner = points[i]
-        back, ahead = points[i - 1] - corner, points[i + 1] - corner
-        back_length, ahead_length = norm(back[0], back[1]), norm(ahead[0], ahead[1])
+        y, x = points[i, 0], points[i, 1]
+        back_y, back_x = points[i - 1, 0] - y, points[i - 1, 1] - x
+        ahead_y, ahead_x = points[i + 1, 0] - y, points[i + 1, 1] - x
+        back_length, ahead_length = norm(back_y, back_x), norm(ahead_y, ahead_x)
         cut = min(largest, 0.4 * back_length, 0.4 * ahead_length)
-        cosine = -(back[0] * ahead[0] + back[1] * ahead[1]) / max(back_length * ahead_length, 1e-12)
+        cosine = -(back_y * ahead_y + back_x * ahead_x) / max(back_length * ahead_length, 1e-12)
         done = cosine > STRAIGHT_ENOUGH
         while not done and cut >= SMALLEST_CUT:
-            a, b = corner + back * (cut / back_length), corner + ahead * (cut / ahead_length)
-            done = is_clear(blocked, a[0], a[1], b[0], b[1], radius)
+            back, ahead = cut / back_length, cut / ahead_length
+            ay, ax = y + back_y * back, x + back_x * back
+            by, bx = y + ahead_y * ahead, x + ahead_x * ahead
+            done = is_clear(blocked, ay, ax, by, bx, radius)
             if done:
-                result[count], result[count + 1] = a, b
-                count += 2
+                count = append(result, append(result, count, ay, ax), by, bx)
             cut *= 0.5
         if not done or cosine > STRAIGHT_ENOUGH:
-            result[count] = corner
-            count += 1
-    result[count] = points[-1]
-    return result[: count + 1].copy()
+            count = append(result, count, y, x)
+    count = append(result, count, points[-1, 0], points[-1, 1])
+    return result[:count].copy()
+
+
+@inner
+def append(line: Points, count: int, y: float, x: float) -> int:
+    """Write a point to row ``count`` of a line, by numbers: a slice takes long to compile."""
+    line[count, 0], line[count, 1] = y, x
+    return count + 1
 
 
 @njit(cache=True)

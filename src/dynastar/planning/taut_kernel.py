@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from dynastar.compiled import njit
+from dynastar.compiled import inner, njit
 from dynastar.planning.segments import Bytes, is_clear, norm
 
 CLOSE = 1e-7  # cells further than the radius, for the arithmetic's sake
@@ -24,7 +24,7 @@ LEFT = -1  # the bend stays as it is
 Bend = tuple[int, float, float, float, float]
 
 
-@njit(cache=True)
+@inner
 def touches_before(
     ay: float, ax: float, by: float, bx: float, cy: float, cx: float,
     oy: float, ox: float, qy: int, qx: int, side: float, radius: float, uy: float, ux: float,
@@ -72,7 +72,7 @@ def edge(
     return slope, -math.inf, further
 
 
-@njit(cache=True)
+@inner
 def convex_corner(blocked: Bytes, row: int, column: int) -> tuple[bool, int, int]:
     """Whether a cell's low corner belongs to a single blocked cell, and the direction to that cell.
 
@@ -87,7 +87,7 @@ def convex_corner(blocked: Bytes, row: int, column: int) -> tuple[bool, int, int
     )
 
 
-@njit(cache=True)
+@inner
 def taut_bend(
     blocked: Bytes, ay: float, ax: float, by: float, bx: float, cy: float, cx: float, radius: float
 ) -> Bend:
@@ -148,7 +148,7 @@ def taut_bend(
     return 1, my, mx, my, mx
 
 
-@njit(cache=True)
+@inner
 def by_two(
     ay: float, ax: float, py: float, px: float, qy: float, qx: float, cy: float, cx: float
 ) -> float:
@@ -157,7 +157,7 @@ def by_two(
     return length + norm(cy - qy, cx - qx)
 
 
-@njit(cache=True)
+@inner
 def all_clear(
     blocked: Bytes, ay: float, ax: float, py: float, px: float,
     qy: float, qx: float, cy: float, cx: float, radius: float,
@@ -170,7 +170,7 @@ def all_clear(
     )
 
 
-@njit(cache=True)
+@inner
 def pulled_bend(
     blocked: Bytes, ay: float, ax: float, by: float, bx: float, cy: float, cx: float, radius: float
 ) -> Bend:

@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import errno
 import io as streams
 import json
 import socket
@@ -232,7 +233,7 @@ def episode_npz(episode: Any) -> bytes:
 def serve(session: Session, host: str, port: int, ready: Callable[[str], None]) -> None:
     """Serves a session until it is interrupted; ``ready`` is told the address. Port 0: any free one.
 
-    Raises InputError for an address that cannot be listened at.
+    Raises InputError for an address that is in use or not of this machine.
     """
     listening = _listen(host, port)
     gate = Gate(host, listening.getsockname()[1])
@@ -265,4 +266,7 @@ def _listen(host: str, port: int) -> socket.socket:
         listening.listen(MOST_CONNECTIONS)  # from now on connections wait until they are served
         return listening
     except (OSError, UnicodeError) as error:
-        raise InputError(f"{host}:{port} cannot be listened at: {error}") from None
+        if isinstance(error, OSError) and error.errno == errno.EADDRINUSE:
+            raise InputError(f"port {port} is in use; try another --port") from None
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{host}:{port} is not an address to serve at: {reason}") from None

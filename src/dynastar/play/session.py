@@ -72,7 +72,6 @@ class Session:
         """Drives to goals with another navigator, and begins another recording."""
         scenario = self.scenery.scenario
         self.navigator = Navigator(scenario.grid, scenario.robot, config)
-        self.navigator.window.complete = True  # all scores are shown
         self._aim(goals)
         self._record()
 
@@ -86,7 +85,7 @@ class Session:
         self._tracer = Tracer(self)
         self.journal = Journal(
             {
-                **scene_data(self.scenery.scenario, self.navigator.planning_map.frame),
+                **scene_data(self.scenery.scenario, self.navigator.planning_map.grid.frame),
                 "scenes": list(self.scenes),
                 "presets": list(PRESETS),
                 **self._settings(),
@@ -143,10 +142,10 @@ class Session:
     def _touch(self, how: str) -> None:
         """Counts a contact, which only one with walkers does not end."""
         self.touched[how] += 1
-        words = "while moving" if how == "moving" else "at rest"
-        self._recorder.event("contact", f"touched something {words}")
+        words = "while moving" if how == "moving" else "while standing still"
+        self._recorder.event("contact", f"contact {words}")
         if not self.scenery.part():
-            self.halted = f"the robot touched something that stands, {words}: reset the scene"
+            self.halted = f"contact with an obstacle at rest, {words}: reset the scene"
             self._recorder.event("halt", self.halted)
             self.journal.read(self._recorder)
 
@@ -185,7 +184,6 @@ class Session:
         )
         if scenario.preset == before.preset and scenario.robot is before.robot:
             self.navigator.retune(config.dwa)
-            self.navigator.window.complete = True
             self.journal.say("settings", **self._settings())
         else:
             self._drive(config, goals)

@@ -190,8 +190,7 @@ class Bridge:
             elif name == "cancel":
                 self.navigator.cancel()
             elif name == "clear":
-                self.navigator.planning_map.forget()
-                self.navigator.sensing.local_map.forget()
+                self.navigator.forget()
             else:
                 raise InputError(f"unknown request '{name:.80}'")
         return json.dumps(wanted)

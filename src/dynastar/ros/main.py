@@ -10,8 +10,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
-from dynastar.navigator.navigator import warm_up
-from dynastar.planning import warm_up_all
+from dynastar.simulation import warm_up
 
 FAREWELL = 0.5  # s to hand the last message to the middleware
 
@@ -20,7 +19,6 @@ def navigate(arguments: Sequence[str]) -> int:
     """Runs the navigator's node; ``arguments`` are ROS's own (``--ros-args ...``)."""
     from dynastar.ros.node import NavigatorNode
 
-    warm_up_all()
     warm_up()
     return run(NavigatorNode, arguments)
 
@@ -28,9 +26,8 @@ def navigate(arguments: Sequence[str]) -> int:
 def simulate(scenario: Any, arguments: Sequence[str]) -> int:
     """Runs the simulator's node with a scenario."""
     from dynastar.ros.sim_node import SimulatorNode
-    from dynastar.simulation import warm_up as warm_up_simulation
 
-    warm_up_simulation()
+    warm_up()
     return run(lambda: SimulatorNode(scenario), arguments)
 
 

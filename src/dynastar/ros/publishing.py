@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from dynastar.geometry import Pose2D, Twist
 from dynastar.navigator import Navigator, RobotState, Status
+from dynastar.navigator.aligned import turned_pose
 from dynastar.robot import arc
 from dynastar.ros.outgoing import Colour, Messages
 
@@ -66,9 +67,11 @@ class StatusPublisher:
             self._publish("local_plan", out.path(_driven(state, status), frame, now))
         if self._wanted("local_map"):
             local = navigator.sensing.local_map
-            stands = navigator.planning_map.stands_in(local)
+            stands = navigator.planning_map.occupied_under(local)
             values = np.where(stands, 100, np.where(local.open > 0, 0, -1)).astype(np.int8)
-            self._publish("local_map", out.grid(values, local.frame, frame, now))
+            corner = turned_pose(Pose2D(*local.origin), navigator.planning_map.grid.frame.yaw)
+            cells = local.resolution, *corner
+            self._publish("local_map", out.grid(values, cells, frame, now))
         if self._wanted("markers"):
             self._publish("markers", self._window_and_tracks(status, state, now))
 

@@ -3,7 +3,7 @@
 from dynastar.simulation.faults import Fault
 from dynastar.simulation.run import Controller, drive, run
 from dynastar.simulation.scenario import Mover, Noise, Pedestrian, Scenario
-from dynastar.simulation.warm_up import warm_up
+from dynastar.simulation.warming import warm_up
 from dynastar.simulation.world import World
 
 __all__ = [

@@ -5,12 +5,12 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.compiled import njit
+from dynastar.compiled import inner, njit
 
 Floats = npt.NDArray[np.float64]
 
 
-@njit(cache=True)
+@inner
 def grid_hit(
     free: npt.NDArray[np.int32], x: float, y: float, dx: float, dy: float, limit: float
 ) -> float:
@@ -45,7 +45,7 @@ def grid_hit(
     return math.inf
 
 
-@njit(cache=True)
+@inner
 def edge_hit(x: float, y: float, dx: float, dy: float, edge: Floats) -> float:
     """Metres from (x, y) along (dx, dy) to the edge (x0, y0, x1, y1); inf for a miss."""
     ex, ey = edge[2] - edge[0], edge[3] - edge[1]
@@ -58,7 +58,7 @@ def edge_hit(x: float, y: float, dx: float, dy: float, edge: Floats) -> float:
     return t if t >= 0.0 and 0.0 <= along <= 1.0 else math.inf
 
 
-@njit(cache=True)
+@inner
 def disc_hit(x: float, y: float, dx: float, dy: float, disc: Floats) -> float:
     """Metres from (x, y) along (dx, dy) to the disc (x, y, radius); 0 inside, inf for a miss."""
     px, py = disc[0] - x, disc[1] - y
@@ -72,7 +72,7 @@ def disc_hit(x: float, y: float, dx: float, dy: float, disc: Floats) -> float:
     return math.inf
 
 
-@njit(cache=True)
+@inner
 def near_edges(edges: Floats, x: float, y: float, range_max: float) -> npt.NDArray[np.int64]:
     """Numbers of the edges (k, 4) that a beam of ``range_max`` m from (x, y) may hit.
 
@@ -91,7 +91,7 @@ def near_edges(edges: Floats, x: float, y: float, range_max: float) -> npt.NDArr
     return near[:n]
 
 
-@njit(cache=True)
+@inner
 def near_discs(discs: Floats, x: float, y: float, range_max: float) -> npt.NDArray[np.int64]:
     """Numbers of the discs (m, 3) that a beam of ``range_max`` m from (x, y) may hit."""
     near = np.empty(len(discs), np.int64)
@@ -103,7 +103,7 @@ def near_discs(discs: Floats, x: float, y: float, range_max: float) -> npt.NDArr
     return near[:n]
 
 
-@njit(cache=True)
+@inner
 def cast_at_edge(
     edge: Floats,
     sensor: tuple[float, float, float],

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.compiled import njit
+from dynastar.compiled import inner, njit
 
 Floats = npt.NDArray[np.float64]
 
@@ -30,7 +30,7 @@ def positions(
         begin, end = times[first], times[last]
         span, at = end - begin, time
         if after[i] == VANISH and not begin <= time <= end:
-            out[i] = math.nan
+            out[i, 0] = out[i, 1] = math.nan
             continue
         if time > begin and span > 0.0:
             if after[i] == LOOP:
@@ -38,17 +38,23 @@ def positions(
             elif after[i] == BACK_AND_FORTH:
                 away = (time - begin) % (2.0 * span)
                 at = begin + min(away, 2.0 * span - away)
-        if at <= begin:
-            out[i] = points[first]
-        elif at >= end:
-            out[i] = points[last]
-        else:
-            b = first + np.searchsorted(times[first : last + 1], at, side="right")
-            share = (at - times[b - 1]) / (times[b] - times[b - 1])
-            out[i] = points[b - 1] + share * (points[b] - points[b - 1])
+        before, beyond = first, last
+        while beyond - before > 1:  # bisection: the keys before and beyond that time
+            middle = (before + beyond) // 2
+            if times[middle] <= at:
+                before = middle
+            else:
+                beyond = middle
+        fraction = 0.0
+        if beyond > before:
+            fraction = (at - times[before]) / (times[beyond] - times[before])
+            fraction = min(max(fraction, 0.0), 1.0)
+        for axis in range(2):
+            step = points[beyond, axis] - points[before, axis]
+            out[i, axis] = points[before, axis] + fraction * step
 
 
-@njit(cache=True)
+@inner
 def point_gap(x: float, y: float, vertices: Floats) -> float:
     """Distance from a point to a convex polygon (k, 2), counter-clockwise; 0 inside."""
     nearest, inside = math.inf, True

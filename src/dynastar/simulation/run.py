@@ -19,7 +19,7 @@ from dynastar.simulation.fault_injector import FaultInjector
 from dynastar.simulation.record import Recorder
 from dynastar.simulation.scenario import Scenario
 from dynastar.simulation.tracing import Tracer
-from dynastar.simulation.warm_up import warm_up
+from dynastar.simulation.warming import warm_up
 from dynastar.simulation.world import World
 
 SENSOR_LOST = 5.0  # s without usable data until a mission is given up
@@ -210,9 +210,9 @@ class Referee:
         """("contact", reason) once the robot has touched something."""
         if not world.contact:
             return None
-        how = "while moving" if world.contact == "moving" else "at rest"
+        how = "while moving" if world.contact == "moving" else "while standing still"
         x, y, _ = world.pose
-        return "contact", f"touched something {how} at ({x:.2f}, {y:.2f}), {world.time:.2f} s"
+        return "contact", f"contact {how} at ({x:.2f}, {y:.2f}), {world.time:.2f} s"
 
     def ended(self, world: World, status: Any) -> tuple[str, str] | None:
         """(outcome, reason) once the mission is over, seen after each command."""

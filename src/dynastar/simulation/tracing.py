@@ -22,21 +22,17 @@ class Considered(NamedTuple):
     reason: str
 
 
-def considered(navigator: Any, status: Any) -> Considered:
-    """What a controller that is a Navigator, or has its ``status``, considered in its last tick."""
-    survey = getattr(navigator, "survey", None)
-    choice = None if survey is None else survey()
+def considered(status: Any) -> Considered:
+    """What a controller with the ``status`` of a Navigator considered in its last tick."""
+    choice = getattr(status, "choice", None)
     candidates, refused = np.empty((0, 3), np.float32), np.empty(0, np.uint8)
     terms, chosen = NO_TERMS, NO_CHOICE
     if choice is not None:
         candidates = np.column_stack([choice.samples, choice.score]).astype(np.float32)
         refused = choice.refused.astype(np.uint8)
         if choice.manoeuvre is not None:
-            v, omega, hold, _ = choice.manoeuvre
-            chosen = np.array([v, omega, hold], np.float32)
-            apart = np.abs(choice.samples - (v, omega)).sum(axis=1)
-            if len(apart) and apart.min() < 1e-6:
-                terms = choice.terms[int(apart.argmin())].astype(np.float32)
+            chosen = np.array(choice.manoeuvre[:3], np.float32)
+            terms = choice.terms[int(np.argmax(choice.score))].astype(np.float32)
     tracks = [(t.x, t.y, t.vx, t.vy, t.radius) for t in getattr(status, "tracks", ())]
     table = np.array(tracks, np.float32).reshape(-1, 5)
     return Considered(candidates, refused, terms, chosen, table, str(status.reason))
@@ -57,7 +53,7 @@ class Sensed:
         planning_map = getattr(navigator, "planning_map", None)
         if planning_map is None:
             return np.empty((0, 3), np.int32)
-        seen, (resolution, x, y, yaw) = planning_map.seen, planning_map.frame
+        seen, (resolution, x, y, yaw) = planning_map.seen, planning_map.grid.frame
         self.frame = (resolution, x, y, yaw)
         if self._known is None or self._known.shape != seen.shape:
             self._known = np.zeros_like(seen)
@@ -84,7 +80,7 @@ class Tracer:
     def tick(self, status: Any) -> tuple[Considered, npt.NDArray[np.int32]]:
         """Notes one more tick, with the status after it; returns what was noted of it."""
         navigator = getattr(self._controller, "navigator", self._controller)
-        one, cells = considered(navigator, status), self._sensed.changes(navigator)
+        one, cells = considered(status), self._sensed.changes(navigator)
         self._candidates.append(one.candidates)
         self._refused.append(one.refused)
         self._terms.append(one.terms)

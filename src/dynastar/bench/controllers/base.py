@@ -149,7 +149,7 @@ class PathController(ABC):
         self._anchor = (now, here)
         self._failed += 1
         if self._failed > self.retries:
-            self._say("blocked", "no progress, whatever was tried")
+            self._say("blocked", f"gave up: no progress after {self.retries} recoveries")
             return
         if self._failed % 2 == 0 and self.robot.limits.v_min < 0.0:
             self._backing_until = now + BACK_UP[0] / BACK_UP[1]

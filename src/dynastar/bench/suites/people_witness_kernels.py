@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.compiled import njit
+from dynastar.compiled import inner, njit
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -115,7 +115,7 @@ def duration(distance: float, v_max: float, accel: float, brake: float) -> float
     return top / accel + top / brake
 
 
-@njit(cache=True)
+@inner
 def in_sight(
     ax: float, ay: float, bx: float, by: float, blocked: npt.NDArray[np.bool_], cell: float
 ) -> bool:
@@ -129,7 +129,7 @@ def in_sight(
     return True
 
 
-@njit(cache=True)
+@inner
 def clear_of_walkers(x, y, sample, people, need, stop, map_):
     """Whether a disc at (x, y) m is clear of all walkers at one sample.
 
@@ -161,13 +161,13 @@ def clear_of_walkers(x, y, sample, people, need, stop, map_):
     return True
 
 
-@njit(cache=True)
+@inner
 def top_speed(distance: float, v_max: float, accel: float, brake: float) -> float:
     """The highest speed of a move of ``distance`` m from rest to rest."""
     return min(v_max, math.sqrt(2.0 * distance * accel * brake / (accel + brake)))
 
 
-@njit(cache=True)
+@inner
 def drive_clear(node, begin, step, task):
     """Whether a drive that leaves a node (row, column, heading, ...) at a tick touches nothing."""
     lattice, drive, people, needs = task.lattice, task.drive, task.people, task.needs

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.bench.suites.people_witness_kernels import Step, drive_clear, duration
-from dynastar.compiled import njit
+from dynastar.compiled import inner, njit
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -37,7 +37,7 @@ class Tree(NamedTuple):
     queue: Ints
 
 
-@njit(cache=True)
+@inner
 def find_rests(task):
     """The rests at all nodes; during a rest nobody comes nearer to the node than ``needs.person``."""
     rows, columns = task.space.to_go.shape
@@ -61,7 +61,7 @@ def find_rests(task):
     return Rests(first, last, early)
 
 
-@njit(cache=True)
+@inner
 def begin_rests(row, column, task, first):
     """Writes to ``first`` the first tick of the rest at a node that each tick is in, or -1."""
     lattice, positions, radii = task.lattice, task.people.positions, task.people.radii
@@ -85,7 +85,7 @@ def begin_rests(row, column, task, first):
         first[row, column, tick] = begin
 
 
-@njit(cache=True)
+@inner
 def step_of(option, node, task):
     """The step that is the ``option``-th of all turns and moves; 0 ticks where it cannot be made."""
     lattice, drive, to_go = task.lattice, task.drive, task.space.to_go
@@ -109,7 +109,7 @@ def step_of(option, node, task):
     return Step(length, 0, there, across, max(1, int(math.ceil(seconds / lattice.tick - 1e-9))))
 
 
-@njit(cache=True)
+@inner
 def make_states(this, step, task, rests, tree, count):
     """Makes the states that one step from a state leads to; returns their number, old ones included.
 
@@ -147,7 +147,7 @@ def make_states(this, step, task, rests, tree, count):
     return count, lowest
 
 
-@njit(cache=True)
+@inner
 def legs_to(found, tree):
     """The legs (n, 5) that led to a state, in order; (0, 5) for state -1."""
     n, at = 0, found

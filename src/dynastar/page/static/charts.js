@@ -149,7 +149,7 @@ class WindowChart {
     }
     if (!best) return;
     const why = best.refused !== 0 ? `refused: ${this.refusals[best.refused] || "not admissible"}`
-      : Number.isFinite(best.score) ? `score ${best.score.toFixed(3)}` : "dropped early: another was sure to be better";
+      : Number.isFinite(best.score) ? `score ${best.score.toFixed(3)}` : "admissible, but each of its manoeuvres touches an obstacle";
     this.hint.textContent = `v ${best.v.toFixed(2)} m/s, omega ${best.omega.toFixed(2)} rad/s: ${why}`;
   }
 }

@@ -1,7 +1,7 @@
 // What is shown of one robot beside its map: state, numbers, the window, lines over time, events.
 
 const LAYERS = { explored: "explored cells", seen: "sensed obstacles", plans: "paths", driven: "driven",
-  candidates: "candidates", movers: "moving obstacles, truly", tracks: "tracked, and in 1 and 2 s",
+  candidates: "candidates", movers: "true positions", tracks: "tracked, predicted 1 s and 2 s ahead",
   follow: "follow the robot" };
 
 const layers = {};

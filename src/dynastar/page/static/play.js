@@ -152,7 +152,7 @@ class Connection {
   }
 }
 
-const TOOLS = { goal: ["G", "send the robot (shift: then there; drag: heading)"], paint: ["P", "paint obstacles"],
+const TOOLS = { goal: ["G", "drive here (Shift: add a goal; drag: set heading)"], paint: ["P", "paint obstacles"],
   erase: ["E", "erase"], walker: ["W", "put walkers in, push them (drag)"], move: ["M", "move the map"] };
 
 // What is done on the map with the tool that is chosen.
@@ -364,11 +364,11 @@ class Page {
 
   clock({ paused, halted, rate }) {
     this.paused = paused;
-    document.getElementById("pause").textContent = paused ? "Go on" : "Pause";
+    document.getElementById("pause").textContent = paused ? "Resume" : "Pause";
     document.getElementById("step").disabled = !paused;
     const { last } = this.live, touched = last ? last.touched : { moving: 0, resting: 0 };
     document.getElementById("clock").textContent = `${(last ? last.time : 0).toFixed(1)} s, ${rate.toFixed(0)} Hz, `
-      + `touched ${touched.moving} moving, ${touched.resting} at rest`;
+      + `contacts: ${touched.moving} moving, ${touched.resting} standing`;
     if (halted) this.say(`Halted: ${halted}`, true);
     this.halted = halted;
   }

@@ -33,13 +33,14 @@ def march(cost, resolution, seed, stop, beyond, value, queue):
     cost[:, 0], cost[:, columns - 1] = np.inf, np.inf
     value[:] = np.inf
     costs, values = cost.reshape(-1), value.reshape(-1)
-    row, column = min(max(seed[0], 1), rows - 2), min(max(seed[1], 1), columns - 2)
-    first, target, begin = row * columns + column, stop[0] * columns + stop[1], seed[2]
+    (seed_row, seed_column, begin), (stop_row, stop_column) = seed, stop
+    row, column = min(max(seed_row, 1), rows - 2), min(max(seed_column, 1), columns - 2)
+    first, target = row * columns + column, stop_row * columns + stop_column
     heads, cells, behind = queue
     heads[:] = -1
     per_metre = 1.0 / (WIDTH * resolution)
     values[first], cells[0], behind[0], heads[0] = begin, first, -1, 0
-    used, spare = 1, -1  # entries in use so far, and the first that is free again
+    used, free_head = 1, -1  # entries in use so far, and the first that is free again
     bucket, empty, limit = 0, 0, np.inf
     while empty < BUCKETS and begin + bucket / per_metre <= limit:
         entry = heads[bucket % BUCKETS]
@@ -48,7 +49,7 @@ def march(cost, resolution, seed, stop, beyond, value, queue):
             empty += 1
             continue
         empty = 0
-        heads[bucket % BUCKETS], behind[entry], spare = behind[entry], spare, entry
+        heads[bucket % BUCKETS], behind[entry], free_head = behind[entry], free_head, entry
         cell = cells[entry]
         here = values[np.uint64(cell)]
         if int((here - begin) * per_metre) < bucket:
@@ -67,11 +68,11 @@ def march(cost, resolution, seed, stop, beyond, value, queue):
                 new = 0.5 * (across + along + math.sqrt(2.0 * step * step - apart * apart))
             else:
                 new = min(across, along) + step
-            if new >= old - CHANGE or (spare < 0 and used == len(cells)):
+            if new >= old - CHANGE or (free_head < 0 and used == len(cells)):
                 continue
             values[np.uint64(at)] = new
-            if spare >= 0:
-                entry, spare = spare, behind[spare]
+            if free_head >= 0:
+                entry, free_head = free_head, behind[free_head]
             else:
                 entry, used = used, used + 1
             last = bucket + BUCKETS - 1

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dynastar.dwa import marching
+from dynastar.guidance import marching
 from naive import shortest
 
 A = 0.1
@@ -109,7 +109,7 @@ def test_the_outermost_cells_are_closed_wherever_the_march_begins():
     assert value[1, 6] == 0.0
 
 
-def test_who_is_where_no_way_leads_is_led_out_of_it():
+def test_from_where_no_way_leads_the_filled_values_lead_out():
     cost = np.ones((30, 30))
     cost[10:20, 10:20] = np.inf
     value = march(cost, 15, 2)

@@ -1,0 +1,177 @@
+"""The terms of Eq. 9, each a function of a rolled-out trajectory, and their sum.
+
+To add a term: write it here, name it in ``Terms``, ``evaluate`` and ``objective``, give it a weight in
+``Weights``, and copy it in ``search.score``; see docs/architecture.md.
+"""
+
+import math
+from typing import NamedTuple
+
+from dynastar.compiled import inner
+from dynastar.dwa.clearance import distance_at
+from dynastar.guidance.cost_to_go import turn_to_descent, value_at
+from dynastar.perception.prediction import contact_probability
+
+LOOKS = 8  # times at which the cost-to-go is looked up along a roll-out
+OVERSHOOT = 0.25  # m that the robot may stop beyond the end of its path
+FAR_OFF = 1.0  # m from the path at which simi is 0
+LEAST_PROGRESS = 0.1  # m of progress that counts in full, at least
+REACH = 3.0  # standard deviations from which on a contact is not possible
+
+
+class Terms(NamedTuple):
+    """The terms of Eq. 9 of one trajectory; ``risk`` counts against it."""
+
+    heading: float
+    dist: float
+    vel: float
+    simi: float
+    risk: float
+
+
+@inner
+def evaluate(scene, rules, start, manoeuvre, rows):
+    """Eq. 8 and the risk: the terms of a manoeuvre from its roll-out ``rows``."""
+    return Terms(
+        progress(scene.cost_to_go, rules, start, rows),
+        dist(rules, start, rows),
+        vel(rules, manoeuvre),
+        simi(scene.distance_to_path, rules, rows) if sigma(scene, rules) > 0.0 else 1.0,
+        risk(scene.moving, rules, rows),
+    )
+
+
+@inner
+def objective(scene, rules, terms):
+    """Eq. 9: G = alpha heading + beta dist + gamma vel + sigma simi - rho risk."""
+    weights = rules.weights
+    return (
+        weights.heading * terms.heading
+        + weights.dist * terms.dist
+        + weights.vel * terms.vel
+        + sigma(scene, rules) * terms.simi
+        - weights.risk * terms.risk
+    )
+
+
+@inner
+def sigma(scene, rules):
+    """The weight of simi: that of the settings, and at least that of a path given by the user."""
+    return max(rules.weights.simi, scene.path_weight)
+
+
+@inner
+def progress(cost_to_go, rules, start, rows):
+    """Heading term: mean decrease of the cost-to-go at eight times, over what is possible at most.
+
+    The mean costs what is put off. It is at least -1, so that being driven off near the goal is no
+    worse than anywhere else. It has no upper bound: near obstacles the cost-to-go falls by more than a
+    metre a metre, and bounded, all manoeuvres would score alike there. Beyond the local map the
+    cost-to-go goes on falling as it fell last.
+    """
+    gained, here, fell = 0.0, start.cost_to_go, 0.0
+    for i in rules.schedule.looks:
+        row = rows[i]
+        if row.on_map:
+            before, here = here, state_value(cost_to_go, rules.limits, row)
+            fell = before - here
+        else:
+            here -= fell
+        gained += start.cost_to_go - here
+    return max(gained / (LOOKS * start.most), -1.0)
+
+
+@inner
+def dist(rules, start, rows):
+    """Dist term: the least clearance (m) while the sample is held, up to ``comfort``, over that."""
+    gap = start.gap
+    for i in range(rules.schedule.held):
+        gap = min(gap, rows[i].gap)
+    return min(gap, rules.comfort) / rules.comfort
+
+
+@inner
+def vel(rules, manoeuvre):
+    """Vel term: the speed that is held over the highest one."""
+    return manoeuvre.v / rules.limits.v_max
+
+
+@inner
+def simi(distance_to_path, rules, rows):
+    """Similarity to the global path: 1 - mean distance from it at eight times, up to 1 m."""
+    off = 0.0
+    for i in rules.schedule.looks:
+        off += min(distance_at(distance_to_path, rows[i].x, rows[i].y), FAR_OFF) / LOOKS
+    return 1.0 - min(1.0, off / FAR_OFF)
+
+
+@inner
+def risk(moving, rules, rows):
+    """Risk term: the highest discounted probability of contact of each hypothesis, weighted, summed."""
+    total = 0.0
+    for m in range(len(moving.obstacles)):
+        obstacle = moving.obstacles[m]
+        near = rules.risk_radius + obstacle.radius
+        for h in range(len(moving.weights)):
+            highest = 0.0
+            for i in range(len(rows)):
+                k = rules.schedule.step[i] - 1
+                travel, deviation = moving.travel[h, k], moving.deviation[k]
+                dx = obstacle.x + travel * obstacle.vx - rows[i].x
+                dy = obstacle.y + travel * obstacle.vy - rows[i].y
+                square, reach = dx * dx + dy * dy, near + REACH * deviation
+                if square < reach * reach:
+                    p = contact_probability(math.sqrt(square) - near, deviation)
+                    highest = max(highest, moving.discount[k] * p)
+            total += moving.weights[h] * highest
+    return total
+
+
+@inner
+def passes_clear(moving, rules, rows, duration):
+    """Whether no moving obstacle that keeps its velocity may touch the robot for so long (s)."""
+    for i in range(len(rows)):
+        k = rules.schedule.step[i]
+        if k * rules.schedule.period > duration:
+            break
+        travel = moving.travel[0, k - 1]
+        for m in range(len(moving.obstacles)):
+            obstacle = moving.obstacles[m]
+            dx = obstacle.x + travel * obstacle.vx - rows[i].x
+            dy = obstacle.y + travel * obstacle.vy - rows[i].y
+            near = rules.body.circumscribed + obstacle.radius + moving.error
+            if dx * dx + dy * dy < near * near:
+                return False
+    return True
+
+
+@inner
+def state_value(cost_to_go, limits, at):
+    """The cost-to-go (m) of a pose and speed: its place's, the curve to the descent, overshooting.
+
+    A curve of radius r that turns by an angle a gets r sin a ahead on a way of r a. It doubles what
+    is left at most: near its goal the robot backs or turns on the spot. ``at`` has x, y, cos, sin, v.
+    """
+    left = value_at(cost_to_go, at.x, at.y)
+    off = abs(turn_to_descent(cost_to_go, at, 0.0))
+    curve = (off - math.sin(off)) * limits.v_max / limits.omega_max
+    too_far = max(0.0, 0.5 * at.v * at.v / limits.v_brake - max(left, 0.0) - OVERSHOOT)
+    return left + min(curve, max(left, 0.0)) + too_far
+
+
+@inner
+def most_progress(rules, v, cost_to_go):
+    """The most that a ``cost_to_go`` (m) can fall by, on average over the looks, from speed ``v``."""
+    most = 0.0
+    between = rules.schedule.period * (rules.schedule.step[-1] // LOOKS)
+    for look in range(1, LOOKS + 1):
+        most += min(farthest(max(v, 0.0), rules.limits, look * between), cost_to_go) / LOOKS
+    return max(most, LEAST_PROGRESS)
+
+
+@inner
+def farthest(v, limits, t):
+    """Metres that can be driven in ``t`` seconds from a speed ``v``."""
+    to_full = max(0.0, limits.v_max - v) / limits.v_accel
+    speeding = min(t, to_full)
+    return (v + 0.5 * limits.v_accel * speeding) * speeding + limits.v_max * (t - speeding)

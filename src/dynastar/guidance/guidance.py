@@ -1,0 +1,138 @@
+"""The cost-to-go over the local map, joined to the global path's remaining length."""
+
+import math
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.clearance import lower_bounds
+from dynastar.field import Field
+from dynastar.guidance.cost_to_go import CostToGo, find_descent, trace, value_at
+from dynastar.guidance.marching import extend, march, queue_for
+from dynastar.guidance.seed import nearest_open, path_exit_cell
+from dynastar.guidance.travel_cost import Encounter, add_encounters, discount_along, travel_cost
+from dynastar.path import Path
+from dynastar.perception.prediction import Prediction
+
+Floats = npt.NDArray[np.float64]
+
+FACTOR = 2  # cells of the local map to one of the cost-to-go
+FOLLOWED_COST = 0.85  # of the cost along the line that was followed before, so that it is kept to
+LINE_POINTS = 50  # of that line
+KNOWN_BEYOND = 3.0  # m that the cost-to-go is known beyond the robot
+OFF_PATH_COST = 6.0  # extra cost of a metre 1 m or more beside a path that is kept to
+OPEN_WITHIN = 6  # cells to the nearest one where the robot fits, at most
+NO_LINE = np.empty((0, 2))
+
+
+class PathTarget(NamedTuple):
+    """A path and the arc length ``s`` (m) of the robot on it.
+
+    ``ahead`` (m) is finite only for a path given by the user: lateral deviation then costs, and the
+    path beyond is ignored.
+    """
+
+    path: Path
+    s: float
+    ahead: float = math.inf
+
+    @property
+    def is_given(self) -> bool:
+        """True for a path given by the user."""
+        return self.ahead < math.inf
+
+
+class Guide(NamedTuple):
+    """The way to the goal over the local map.
+
+    ``distance_to_path`` is to the path ahead, ``line`` (n, 2) the descent from the robot, ``reachable``
+    tells whether a way leads from the robot to where the path leaves the local map.
+    """
+
+    cost_to_go: CostToGo
+    distance_to_path: Field
+    line: Floats
+    reachable: bool
+
+    def cost_at(self, x: float, y: float) -> float:
+        """Metres left to the goal from a point."""
+        return float(value_at(self.cost_to_go, x, y))
+
+
+class Guidance:
+    """Computes the cost-to-go of the present path; its arrays are made once.
+
+    ``keep_to_path`` asks for the distances to planned paths, too (needed for sigma > 0).
+    """
+
+    def __init__(
+        self, cells: int, resolution: float, margin: float, comfort: float, keep_to_path: bool
+    ) -> None:
+        n = cells // FACTOR
+        self.resolution = resolution * FACTOR
+        self._margin, self._comfort, self._keep_to_path = margin, comfort, keep_to_path
+        self._cost = np.empty((n, n))
+        self._value, self._filled = np.full((n, n), np.inf), np.empty((n, n))
+        self._descent_x, self._descent_y = np.empty((n, n)), np.empty((n, n))
+        self._queue = queue_for(n * n)
+        self._line = np.empty((LINE_POINTS, 2))
+
+    def update(
+        self,
+        obstacles: Field,
+        target: PathTarget,
+        moving: Prediction,
+        encounter: Encounter,
+        followed: Floats = NO_LINE,
+    ) -> Guide:
+        """The way to the goal for a robot at the place of ``encounter``.
+
+        ``obstacles`` are distances to the local map's obstacles; ``followed`` (n, 2) is the line of
+        the tick before, which is preferred.
+        """
+        a, x0, y0 = self.resolution, obstacles.x0, obstacles.y0
+        cost = Field(self._cost, x0, y0, a)
+        travel_cost(obstacles.values, FACTOR, self._margin, self._comfort, self._cost)
+        to_path = obstacles
+        if target.is_given or self._keep_to_path:
+            to_path = self._distance_to_path(target, x0, y0)
+        if target.is_given:
+            self._cost += OFF_PATH_COST * np.minimum(to_path.values, 1.0)
+        add_encounters(cost, moving, encounter)
+        discount_along(cost, followed, FOLLOWED_COST)
+        stop = self._cell_of(encounter.x - x0, encounter.y - y0)
+        march(self._cost, a, self._seed(target, cost), stop, KNOWN_BEYOND, self._value, self._queue)
+        extend(self._value, a, self._filled)
+        value = Field(self._value, x0, y0, a)
+        cost_to_go = CostToGo(value, self._filled, self._descent_x, self._descent_y)
+        find_descent(cost_to_go)
+        count = trace(cost_to_go, encounter.x, encounter.y, self._line)
+        reachable = bool(np.isfinite(self._value[stop]))
+        return Guide(cost_to_go, to_path, self._line[:count].copy(), reachable)
+
+    def _cell_of(self, x: float, y: float) -> tuple[int, int]:
+        """The nearest cell where the robot fits to a place in the local map (m from its corner)."""
+        last = len(self._cost) - 1
+        row, column = int(y / self.resolution), int(x / self.resolution)
+        row, column = min(max(row, 0), last), min(max(column, 0), last)
+        row, column = nearest_open(self._cost, row, column, OPEN_WITHIN)
+        return int(row), int(column)
+
+    def _distance_to_path(self, target: PathTarget, x0: float, y0: float) -> Field:
+        """Distances (m) to the part of the path that lies ahead in the local map."""
+        a = self.resolution
+        end = target.s + min(target.ahead, a * len(self._cost))
+        points = target.path.resampled(target.s, end, a)
+        cells = np.round((points - (x0, y0)) / a - 0.5).astype(np.int32)
+        off = np.ones(self._cost.shape, np.uint8)
+        cv2.polylines(off, [cells], False, 0)
+        return Field(lower_bounds(off, a), x0, y0, a)
+
+    def _seed(self, target: PathTarget, cost: Field) -> tuple[int, int, float]:
+        """The cell where the path leaves the local map, or ends, and the length (m) left from there."""
+        path = target.path
+        span = target.s, min(path.length, target.s + target.ahead)
+        row, column, s = path_exit_cell(path.points, path.arc, span, cost, OPEN_WITHIN // 2)
+        return int(row), int(column), path.length - float(s)

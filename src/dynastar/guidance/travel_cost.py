@@ -1,0 +1,106 @@
+"""What a metre costs in each cell of the local map: more near obstacles, and where one is met."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from dynastar.compiled import njit
+from dynastar.perception.prediction import contact_probability
+
+NEAR_COST = 4.0  # extra cost of a metre right at the margin of an obstacle
+ENCOUNTER_COST = 15.0  # extra cost of a metre where a moving obstacle is met for certain
+REACH = 2.0  # standard deviations from which on a moving obstacle costs nothing
+
+
+class Encounter(NamedTuple):
+    """How the robot would meet moving obstacles: its place (m), speed (m/s) and radius (m).
+
+    Predictions are known from ``begin`` on, every ``step`` seconds; ``discount`` is that at ``begin``.
+    """
+
+    x: float
+    y: float
+    speed: float
+    radius: float
+    begin: float
+    step: float
+    discount: float
+
+
+@njit(cache=True)
+def travel_cost(distance, factor, margin, comfort, cost):
+    """Write the cost of a metre in every cell to ``cost``, inf where the robot does not fit.
+
+    ``distance`` holds metres to the nearest obstacle on a grid ``factor`` times as fine; a cell has
+    the clearance of the best of its parts. 1 + 4 (1 - clearance / comfort)^2, ``comfort`` m beyond
+    ``margin`` m.
+    """
+    for row in range(cost.shape[0]):
+        for column in range(cost.shape[1]):
+            best = 0.0
+            for i in range(factor):
+                for j in range(factor):
+                    best = max(best, distance[row * factor + i, column * factor + j])
+            clear = best - margin
+            if clear < 0.0:
+                cost[row, column] = np.inf
+            else:
+                short = max(0.0, 1.0 - clear / comfort)
+                cost[row, column] = 1.0 + NEAR_COST * short * short
+
+
+@njit(cache=True)
+def add_encounters(cost, moving, encounter):
+    """Add what moving obstacles cost where the robot would meet them; ``cost`` is a Field.
+
+    A cell costs ``ENCOUNTER_COST`` times the probability of a contact at the time when a robot that
+    drives straight there arrives, discounted with that time as risk is.
+    """
+    hypotheses, steps = moving.travel.shape
+    rows, columns = cost.values.shape
+    a = cost.resolution
+    for m in range(len(moving.obstacles)):
+        obstacle = moving.obstacles[m]
+        near = encounter.radius + obstacle.radius
+        reach = near + REACH * moving.deviation[steps - 1]
+        for h in range(hypotheses):
+            last = moving.travel[h, steps - 1]
+            first_y, last_y = obstacle.y, obstacle.y + last * obstacle.vy
+            first_x, last_x = obstacle.x, obstacle.x + last * obstacle.vx
+            low = max(0, int((min(first_x, last_x) - reach - cost.x0) / a))
+            high = min(columns - 1, int((max(first_x, last_x) + reach - cost.x0) / a))
+            bottom = max(0, int((min(first_y, last_y) - reach - cost.y0) / a))
+            top = min(rows - 1, int((max(first_y, last_y) + reach - cost.y0) / a))
+            for row in range(bottom, top + 1):
+                y = cost.y0 + (row + 0.5) * a
+                for column in range(low, high + 1):
+                    x = cost.x0 + (column + 0.5) * a
+                    away_x, away_y = x - encounter.x, y - encounter.y
+                    arrives = math.sqrt(away_x * away_x + away_y * away_y) / encounter.speed
+                    k = int(math.floor((arrives - encounter.begin) / encounter.step - 0.5))
+                    if k < 0 or k >= steps:
+                        continue
+                    travel, deviation = moving.travel[h, k], moving.deviation[k]
+                    dx = obstacle.x + travel * obstacle.vx - x
+                    dy = obstacle.y + travel * obstacle.vy - y
+                    square, within = dx * dx + dy * dy, near + REACH * deviation
+                    if square < within * within:
+                        p = contact_probability(math.sqrt(square) - near, deviation)
+                        p *= moving.weights[h] * moving.discount[k] * encounter.discount
+                        cost.values[row, column] += ENCOUNTER_COST * p
+
+
+@njit(cache=True)
+def discount_along(cost, line, factor):
+    """Scale the cost (a Field) of the cells along a ``line`` (n, 2) and beside it, each once."""
+    rows, columns = cost.values.shape
+    done = np.zeros((rows, columns), np.bool_)
+    for k in range(len(line)):
+        column = int((line[k, 0] - cost.x0) / cost.resolution)
+        row = int((line[k, 1] - cost.y0) / cost.resolution)
+        for i in range(max(row - 1, 0), min(row + 2, rows)):
+            for j in range(max(column - 1, 0), min(column + 2, columns)):
+                if not done[i, j]:
+                    done[i, j] = True
+                    cost.values[i, j] *= factor

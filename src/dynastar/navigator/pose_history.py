@@ -1,0 +1,73 @@
+"""The poses of the last seconds: scans are placed by them, and faults of the pose are found."""
+
+import math
+from collections import deque
+
+from dynastar.geometry import Pose2D, interpolate, wrap_angle
+from dynastar.navigator.config import NavigatorConfig
+from dynastar.navigator.status import RobotState
+from dynastar.robot import Limits
+
+FARTHEST = 1e6  # m from the map's origin, where positions still tell cells apart
+KEPT_FOR = 2.0  # s
+FASTER = 1.2  # times the highest speed, up to which a pose has not jumped
+JUMP = 0.05  # m
+TURN_JUMP = 0.1  # rad
+
+
+class PoseHistory:
+    """The robot's states of the last two seconds, newest last."""
+
+    def __init__(self, limits: Limits, config: NavigatorConfig) -> None:
+        self._limits, self._config = limits, config
+        self._states: deque[RobotState] = deque()
+
+    @property
+    def pose(self) -> Pose2D:
+        """The newest pose."""
+        return self._states[-1].pose
+
+    def fault(self, state: RobotState) -> str | None:
+        """Describe why a state cannot be used, or None."""
+        if not all(math.isfinite(number) for number in (state.stamp, *state.pose, *state.twist)):
+            return (
+                "the robot's state is not finite: expected a stamp, a pose and a twist of numbers"
+            )
+        x, y, _ = state.pose
+        if max(abs(x), abs(y)) > FARTHEST:
+            return f"the robot's pose is ({x:g}, {y:g}): expected within 1e6 m"
+        if self._states and state.stamp < self._states[-1].stamp:
+            return f"time went back by {self._states[-1].stamp - state.stamp:.3f} s"
+        return None
+
+    def add(self, state: RobotState) -> bool:
+        """Keep a state; True if the pose jumped, which drops those before (the map was corrected)."""
+        jumped = bool(self._states) and self._is_jump(self._states[-1], state)
+        if jumped:
+            self._states.clear()
+        self._states.append(state)
+        while state.stamp - self._states[0].stamp > KEPT_FOR:
+            self._states.popleft()
+        return jumped
+
+    def pose_at(self, stamp: float) -> Pose2D:
+        """The pose at a time (s), interpolated between the states that are kept."""
+        after = self._states[-1]
+        for before in reversed(self._states):
+            if before.stamp <= stamp:
+                span = after.stamp - before.stamp
+                fraction = min(1.0, (stamp - before.stamp) / span) if span > 0.0 else 0.0
+                return interpolate(before.pose, after.pose, fraction)
+            after = before
+        return self._states[0].pose
+
+    def _is_jump(self, last: RobotState, state: RobotState) -> bool:
+        """Whether the pose moved further than the robot can have."""
+        limits, config, dt = self._limits, self._config, state.stamp - last.stamp
+        moved = math.hypot(state.pose.x - last.pose.x, state.pose.y - last.pose.y)
+        turned = abs(wrap_angle(state.pose.theta - last.pose.theta))
+        fastest = max(limits.v_max, -limits.v_min)
+        return (
+            moved > FASTER * fastest * dt + 4.0 * config.pose_error + JUMP
+            or turned > FASTER * limits.omega_max * dt + 4.0 * config.heading_error + TURN_JUMP
+        )

@@ -1,0 +1,40 @@
+"""Compiling or loading all that a mission calls, so that nothing is compiled while a robot drives."""
+
+from functools import cache
+
+import numpy as np
+
+from dynastar.geometry import Goal, Pose2D
+from dynastar.grid import OccupancyGrid
+from dynastar.navigator import Navigator, NavigatorConfig, RobotState
+from dynastar.robot import ROBOTS
+from dynastar.simulation.scenario import Mover, Scenario
+from dynastar.simulation.world import World
+
+TICKS, PERIOD = 15, 0.1  # s
+OPEN, BY_THE_WALL = (1.0, 1.0, 0.0), (1.0, 0.36, 0.0)  # starts; the second is in the inflation
+
+
+@cache
+def warm_up() -> None:
+    """Drive past a box and a walker for a few seconds, as a disc and as a polygon, once a process.
+
+    Along a path first, and then to goals: by then another process may have compiled the planner.
+    """
+    occupied = np.pad(np.zeros((58, 98), np.int8), 1, constant_values=100)
+    box = np.array([[3.0, 0.6], [3.5, 0.6], [3.5, 1.4], [3.0, 1.4]])
+    walker = Mover(0.3, np.array([0.0, 4.0]), np.array([[5.0, 2.2], [1.0, 1.5]]))
+    goals = Goal(1.2, 1.0, 1.0), Goal(9.0, 3.0)
+    for name, start in ("pioneer3dx", OPEN), ("jackal", BY_THE_WALL):
+        grid, robot = OccupancyGrid(occupied, 0.1), ROBOTS[name]
+        scenario = Scenario(
+            "warm-up", grid, robot, start, goals, obstacles=(box,), movers=(walker,), latency=0.1
+        )
+        world = World(scenario, Pose2D(*start))
+        navigator = Navigator(grid, robot, NavigatorConfig(latency=0.1))
+        navigator.follow([start[:2], (9.0, 3.0)])
+        for tick in range(2 * TICKS):
+            if tick == TICKS:
+                navigator.set_goal(goals)
+            state = RobotState(world.time, world.pose, world.twist)
+            world.step(navigator.command(state, world.scan()), PERIOD)

@@ -1,0 +1,90 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from dynastar.field import Field
+from dynastar.guidance.travel_cost import (
+    ENCOUNTER_COST,
+    NEAR_COST,
+    Encounter,
+    add_encounters,
+    discount_along,
+    travel_cost,
+)
+from dynastar.perception import MovingObstacle, PredictionConfig
+from dynastar.perception.prediction import predict
+
+A = 0.1
+CONFIG = PredictionConfig()
+
+
+def cost_of(rows, columns):
+    return Field(np.ones((rows, columns)), 0.0, 0.0, A)
+
+
+@given(st.integers(0, 10**6))
+@settings(max_examples=30, deadline=None)
+def test_the_cost_of_a_metre_rises_towards_obstacles(seed):
+    distance = np.random.default_rng(seed).uniform(0.0, 1.2, (20, 24)).astype(np.float32)
+    cost = np.empty((10, 12))
+    travel_cost(distance, 2, 0.35, 0.25, cost)
+    clear = distance.reshape(10, 2, 12, 2).max(axis=(1, 3)).astype(float) - 0.35
+    expected = 1.0 + NEAR_COST * np.maximum(0.0, 1.0 - clear / 0.25) ** 2
+    np.testing.assert_allclose(cost, np.where(clear < 0.0, np.inf, expected), rtol=1e-6)
+
+
+def test_a_moving_obstacle_costs_where_and_when_the_robot_meets_it():
+    """It crosses ahead; the robot arrives when it is at (3.05, 2), not when it was before that."""
+    moving = predict([MovingObstacle(3.05, 0.5, 0.0, 0.5, 0.3)], CONFIG, (0.0, 0.1, 40))
+    encounter, cost = Encounter(0.05, 2.0, 1.0, 0.3, 0.0, 0.1, 1.0), cost_of(40, 60)
+    add_encounters(cost, moving, encounter)
+    at_most = math.exp(-3.0 / CONFIG.memory) * ENCOUNTER_COST
+    assert cost.values[20, 30] > 1.0 + 0.5 * 0.7 * at_most
+    assert cost.values[20, 30] < 1.0 + 1.1 * at_most
+    assert cost.values[20, 10] == 1.0  # the robot passes there before it comes
+    assert cost.values.max() <= 1.0 + ENCOUNTER_COST + 1e-9
+    alone = cost_of(40, 60)
+    add_encounters(alone, predict([], CONFIG, (0.0, 0.1, 40)), encounter)
+    assert (alone.values == 1.0).all()
+
+
+@given(st.integers(0, 10**6))
+@settings(max_examples=20, deadline=None)
+def test_every_cell_costs_what_all_encounters_on_arrival_do(seed):
+    random = np.random.default_rng(seed)
+    obstacles = [
+        MovingObstacle(*random.uniform(-1.0, 4.0, 2), *random.normal(0.0, 0.8, 2), 0.25)
+        for _ in range(4)
+    ]
+    latency, step, steps = 0.05, 0.1, 30
+    moving = predict(obstacles, CONFIG, (latency, step, steps))
+    place, speed, cost = (1.5, 1.0), 0.9, cost_of(20, 30)
+    discount = math.exp(-latency / CONFIG.memory)
+    add_encounters(cost, moving, Encounter(*place, speed, 0.3, latency, step, discount))
+    times = latency + step * np.arange(1, steps + 1)
+    for row, column in np.ndindex(cost.values.shape):
+        cell = np.array([column + 0.5, row + 0.5]) * A
+        arrives = math.dist(cell, place) / speed
+        k, expected = int(np.argmin(abs(times - arrives))), 1.0
+        if abs(times[k] - arrives) <= 0.05:
+            for x, y, vx, vy, radius in obstacles:
+                mean = np.array([x, y]) + moving.travel[:, k, None] * np.array([vx, vy])
+                gaps = np.hypot(*(mean - cell).T) - 0.3 - radius
+                p = 1.0 / (1.0 + np.exp(1.702 * gaps / moving.deviation[k]))
+                p[gaps >= 2.0 * moving.deviation[k]] = 0.0
+                discounted = math.exp(-times[k] / CONFIG.memory) * (p * moving.weights).sum()
+                expected += ENCOUNTER_COST * discounted
+        assert cost.values[row, column] == pytest.approx(expected)
+
+
+def test_the_line_that_was_followed_is_discounted_once():
+    cost = cost_of(20, 20)
+    cost.values[5, 5] = np.inf
+    line = np.array([(0.55, 0.55), (0.56, 0.55), (1.05, 0.55), (-3.0, 9.0)])
+    discount_along(cost, line, 0.85)
+    assert sorted(set(cost.values.ravel())) == [0.85, 1.0, np.inf]
+    assert (cost.values[4:7, 4:7] != 1.0).all()
+    assert (cost.values[8:] == 1.0).all()

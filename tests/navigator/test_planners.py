@@ -1,0 +1,117 @@
+"""The planners of several clearances, on a planning map that changes."""
+
+import numpy as np
+import pytest
+
+from dynastar.errors import GoalOccupied, NoPath
+from dynastar.grid import GridFrame, OccupancyGrid
+from dynastar.navigator import NavigatorConfig
+from dynastar.navigator.planners import Planners
+from dynastar.perception import LocalMap, PlanningMap
+from dynastar.perception.local_map import SEEN_FREE, SEEN_OCCUPIED
+from dynastar.planning import GridPlanner
+
+START, GOAL = (1.0, 3.0), (7.0, 3.0)
+CONFIG = NavigatorConfig(comfort=0.2, resolution=0.1)
+
+
+def room(values=None, **masks):
+    """8 x 6 m in cells of 0.1 m with a wall all round."""
+    values = np.zeros((60, 80), np.int8) if values is None else values
+    values[[0, -1]] = values[:, [0, -1]] = 100
+    return OccupancyGrid(values, GridFrame(0.1), **masks)
+
+
+def planners(grid=None):
+    return Planners(PlanningMap(room() if grid is None else grid, 0.1), CONFIG, (0.3, 0.25))
+
+
+def show(made, state, x0, y0, x1, y1):
+    """Takes in a local map that shows a box as ``state``."""
+    local_map = LocalMap(CONFIG.local_map, *made.planning_map.lattice)
+    local_map.follow(4.0, 3.0)
+    a, (left, low) = local_map.resolution, local_map.origin
+    at = (np.arange(len(local_map.states)) + 0.5) * a
+    x, y = at + left, at[:, None] + low
+    local_map.states[(x0 <= x) & (x < x1) & (y0 <= y) & (y < y1)] = state
+    return made.mark(made.planning_map.merge(local_map))
+
+
+def least_distance(path, x, y):
+    points = path.resampled(0.0, path.length, 0.02)
+    return np.hypot(points[:, 0] - x, points[:, 1] - y).min()
+
+
+def test_what_was_seen_is_gone_round_until_it_is_forgotten():
+    made = planners()
+    straight = made.plan(START, GOAL, explored=False).path
+    assert straight.length == pytest.approx(6.0, abs=0.01)
+    assert show(made, SEEN_OCCUPIED, 3.8, 2.6, 4.2, 3.4)
+    assert not show(made, SEEN_OCCUPIED, 3.8, 2.6, 4.2, 3.4)
+    assert made.blocked_at(straight.points) == pytest.approx(2.8 - 0.25, abs=0.15)
+    around = made.plan(START, GOAL, explored=False).path
+    assert around.length > 6.1
+    assert made.blocked_at(around.points) is None
+    assert least_distance(around, 4.0, 3.35) >= 0.25
+    made.forget()
+    assert made.plan(START, GOAL, explored=False).path.length == pytest.approx(6.0, abs=0.01)
+
+
+def test_room_to_spare_is_not_worth_a_detour():
+    values = np.zeros((60, 80), np.int8)
+    values[:, 38:42] = 100
+    values[28:33, 38:42] = 0  # 0.5 m wide on the straight way, and a wide gap higher up
+    values[45:57, 38:42] = 0
+    plan = planners(room(values)).plan(START, GOAL, explored=False)
+    assert plan.radius == 0.25
+    assert plan.path.length < 6.1
+
+
+def test_unknown_space_seen_free_is_planned_through_and_a_keepout_never():
+    values = np.zeros((60, 80), np.int8)
+    values[:, 35:45] = -1
+    made = planners(room(values.copy()))
+    with pytest.raises(NoPath):
+        made.plan(START, GOAL, explored=False)
+    assert show(made, SEEN_FREE, 3.0, 0.3, 5.0, 5.7)
+    assert made.plan(START, GOAL, explored=False).path.length == pytest.approx(6.0, abs=0.01)
+    keepout = np.zeros((60, 80), bool)
+    keepout[:, 38:42] = True
+    barred = planners(room(values, keepout=keepout))
+    show(barred, SEEN_FREE, 3.0, 0.3, 5.0, 5.7)
+    with pytest.raises(NoPath):
+        barred.plan(START, GOAL, explored=False)
+
+
+def test_the_planners_know_after_many_sights_what_fresh_ones_would():
+    made, rng = planners(), np.random.default_rng(4)
+    for _ in range(8):
+        x, y = rng.uniform(0.5, 7.0), rng.uniform(0.5, 5.0)
+        state = rng.choice([SEEN_OCCUPIED, SEEN_OCCUPIED, SEEN_FREE])
+        show(made, state, x, y, x + rng.uniform(0.1, 1.0), y + 0.4)
+    blocked = made.planning_map.blocked
+    fresh_grid = OccupancyGrid(np.where(blocked, 100, 0).astype(np.int8), GridFrame(0.1))
+    for planner in made.by_width:
+        fresh = GridPlanner(fresh_grid, planner.radius, "blocked", CONFIG.planner)
+        assert np.array_equal(planner.blocked, blocked)
+        assert np.array_equal(planner.inflated, fresh.inflated)
+
+
+def test_there_is_room_to_spare_where_there_is_room():
+    values = np.zeros((60, 80), np.int8)
+    values[:28, 38:42] = 100
+    values[32:, 38:42] = 100  # a door of 0.4 m
+    with pytest.raises(NoPath):
+        planners(room(values)).plan(START, GOAL, explored=False)
+    values = np.zeros((60, 80), np.int8)
+    values[:27, 38:42] = 100
+    values[33:, 38:42] = 100  # a door of 0.6 m: only just
+    assert planners(room(values)).plan(START, GOAL, explored=False).radius == 0.25
+    assert planners().plan(START, GOAL, explored=False).radius == pytest.approx(0.5)
+
+
+def test_a_goal_that_is_seen_occupied_is_said():
+    made = planners()
+    show(made, SEEN_OCCUPIED, 6.8, 2.8, 7.2, 3.2)
+    with pytest.raises(GoalOccupied):
+        made.plan(START, GOAL, explored=False)
