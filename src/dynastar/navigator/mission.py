@@ -1,4 +1,4 @@
-"""The mission: its goals in order, and the state machine of what the robot is about."""
+"""The mission: its goals in order, and its state machine."""
 
 import logging
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ OVER = ("idle", "arrived", "blocked")
 
 
 class Mission:
-    """Where to, how it stands and why.
+    """The goals, the state of the mission and its reason.
 
     A mission is under way ("following", "avoiding", "waiting", "turning", "recovering") until it is
     over ("arrived", "blocked", or "idle" without a goal), and then stays so until the next begins.
@@ -34,7 +34,7 @@ class Mission:
         return self.state not in OVER and bool(self.goals)
 
     def begin(self, goals: Sequence[Goal], reason: str) -> None:
-        """Sets out for ``goals``; with none it is idle."""
+        """Begin a mission to ``goals``; without goals it is idle."""
         self.goals, self.error, self._before = list(goals), None, None
         self.state, self.reason = ("following" if self.goals else "idle"), reason
 
@@ -44,29 +44,29 @@ class Mission:
             self.state, self.reason = state, reason
 
     def reach(self) -> None:
-        """The first goal is reached; with the last, the mission is over."""
+        """Drop the first goal, which is reached; without another the mission is over."""
         self.goals.pop(0)
         if not self.goals:
             self.state, self.reason = "arrived", "the goal is reached"
 
     def block(self, reason: str, error: PlanningError | None = None) -> None:
-        """The mission is over, short of its goal."""
+        """End the mission short of its goal."""
         self.state, self.reason, self.error = "blocked", reason, error
 
     def recover(self, now: float, detail: str) -> None:
-        """Notes a recovery at ``now`` (s)."""
+        """Count a recovery at ``now`` (s)."""
         log.info("recovery at %.1f s: %s", now, detail)
         self.recoveries += 1
         self.say("recovering", detail)
 
     def lose(self, fault: str) -> None:
-        """Data are missing or wrong: nothing is driven until they are back."""
+        """Enter "sensor_lost" because of a ``fault``, until ``regain``."""
         if self._before is None:
             self._before = self.state, self.reason
         self.state, self.reason = "sensor_lost", fault
 
     def regain(self) -> bool:
-        """Data are good: it is what it was before they were lost; whether they had been."""
+        """Restore the state saved by ``lose``. Returns True if data had been lost."""
         if self._before is None:
             return False
         (self.state, self.reason), self._before = self._before, None

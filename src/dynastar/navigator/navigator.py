@@ -23,7 +23,7 @@ from dynastar.navigator.planners import Planners
 from dynastar.navigator.progress import Progress
 from dynastar.navigator.replanning import Route
 from dynastar.navigator.sensing import Sensing
-from dynastar.navigator.status import RobotState, Status, as_floats
+from dynastar.navigator.status import RobotState, Status, as_floats, within_limits
 from dynastar.path import Path
 from dynastar.perception import MovingObstacle, PlanningMap
 from dynastar.planning import Planner
@@ -59,8 +59,8 @@ class Navigator:
         ):
             if not isinstance(value, kind):
                 names = f", or one of {', '.join(ROBOTS)}" if kind is Robot else ""
-                got = type(value).__name__
-                raise InputError(f"{what}: got {got}, expected {kind.__name__}{names}")
+                expected = f"{kind.__name__}{names}"
+                raise InputError(f"{what}: got {type(value).__name__}, expected {expected}")
         if not config.reverse:
             robot = replace(robot, limits=robot.limits._replace(v_min=max(robot.limits.v_min, 0.0)))
         config = fitted(config, robot.footprint.inscribed)
@@ -200,7 +200,7 @@ class Navigator:
     ) -> Twist:
         """The twist to drive from now on; ``movers`` replaces what the tracker finds in the scans."""
         self._choice = None
-        state, mission = self._within_limits(as_floats(state)), self.mission
+        state, mission = within_limits(as_floats(state), self.robot.limits), self.mission
         state = state._replace(pose=turned_pose(state.pose, -self._yaw))
         if movers is not None:
             movers = [turned_disc(MovingObstacle(*mover), -self._yaw) for mover in movers]
@@ -221,16 +221,6 @@ class Navigator:
         if not mission.under_way:
             return self._commands.brake(state)
         return self._commands.send(state, self._decide(state, acting, movers))
-
-    def _within_limits(self, state: RobotState) -> RobotState:
-        """The state without speeds that the robot cannot have, as a glitch of the odometry reports."""
-        v, omega = state.twist
-        if not (math.isfinite(v) and math.isfinite(omega)):
-            return state
-        limits = self.robot.limits
-        v = min(max(v, limits.v_min), limits.v_max)
-        omega = min(max(omega, -limits.omega_max), limits.omega_max)
-        return state._replace(twist=Twist(v, omega))
 
     def _has_arrived(self, state: RobotState, acting: tuple[Pose2D, Twist]) -> bool:
         goal, config = turned_goal(self.mission.goals[0], -self._yaw), self.config

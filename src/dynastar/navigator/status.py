@@ -10,6 +10,7 @@ from dynastar.geometry import Pose2D, Twist
 from dynastar.grid import GridFrame
 from dynastar.perception import Track
 from dynastar.planning import Plan
+from dynastar.robot import Limits
 
 State = Literal[
     "idle", "following", "avoiding", "waiting", "turning", "recovering", "arrived", "blocked",
@@ -41,6 +42,16 @@ def as_floats(state: RobotState) -> RobotState:
         )
     except (TypeError, ValueError, OverflowError):
         return NO_STATE
+
+
+def within_limits(state: RobotState, limits: Limits) -> RobotState:
+    """The state without speeds that the robot cannot have, as a glitch of the odometry reports."""
+    v, omega = state.twist
+    if not (math.isfinite(v) and math.isfinite(omega)):
+        return state
+    v = min(max(v, limits.v_min), limits.v_max)
+    omega = min(max(omega, -limits.omega_max), limits.omega_max)
+    return state._replace(twist=Twist(v, omega))
 
 
 @dataclass(frozen=True)

@@ -121,10 +121,11 @@ def sort_cells(seen_free, occupied, cleared_until, now, seen, uncleared, soft):
 
 @njit(cache=True)
 def find_bodies(near_cleared, near_solid, radius, nobody):
-    """Writes to ``nobody`` (uint8) 0 where the centre of a body of ``radius`` (cells) may be; if any.
+    """Mark where a hidden person's centre may be: 0 in ``nobody`` (uint8), else 1.
 
-    It fits where nothing cleared and nothing solid is nearer, and hides where what is cleared is no
-    more than a cell further away than what is solid.
+    Returns True if there is any such cell. A body of ``radius`` (cells) fits where nothing cleared
+    and nothing solid is nearer, and hides where what is cleared is no more than a cell further away
+    than what is solid.
     """
     found = False
     rows, columns = nobody.shape

@@ -40,7 +40,7 @@ class Allowance:
         self._left, self._at = BURST, time.monotonic()
 
     def take(self) -> bool:
-        """Takes one; whether there was any."""
+        """Take one. Returns True if there was one."""
         now = time.monotonic()
         self._left = min(BURST, self._left + RATE * (now - self._at))
         self._at = now

@@ -34,7 +34,7 @@ class Stroke(NamedTuple):
 
 
 class Walker(NamedTuple):
-    """Put somebody in, who walks with this velocity."""
+    """Add a walker with this velocity."""
 
     x: Metres
     y: Metres

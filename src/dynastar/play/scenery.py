@@ -63,7 +63,7 @@ class Scenery:
         return walker(place, velocity, radius, self.world.time, self.world.gaps)
 
     def _gaps_with_robot(self, points: Floats) -> Floats:
-        """Metres (n,) from points (n, 2) to what stands, the robot where it is now included."""
+        """Metres (n,) from points (n, 2) to the nearest obstacle or the robot."""
         apart = np.hypot(*(points - self.world.pose[:2]).T) - self._reach
         return np.minimum(self.world.gaps(points), np.maximum(apart, 0.0))
 
@@ -95,7 +95,7 @@ class Scenery:
                 self._movers[i] = gone(radius)
 
     def _turn_back(self) -> bool:
-        """Makes walkers whose line is painted over walk as far as there is room; whether any are."""
+        """Shorten the lines of walkers that are painted over. Returns True if any are."""
         solid, turned = shapely.union_all([shapely.Polygon(r) for r in self._paint.rings()]), False
         for i, place in enumerate(self._places()):
             mover = self._movers[i]
@@ -108,7 +108,7 @@ class Scenery:
         return turned
 
     def put_in(self, message: ask.Walker) -> None:
-        """Puts somebody in, who walks to and fro."""
+        """Add a walker who walks to and fro."""
         place = np.array([message.x, message.y])
         if np.isfinite(self._places()[:, 0]).sum() >= MOST_WALKERS:
             raise InputError(f"there are {MOST_WALKERS} walkers in the scene, which are enough")
@@ -132,7 +132,7 @@ class Scenery:
     # -- contacts ---------------------------------------------------------------------------------
 
     def part(self) -> bool:
-        """After a contact: walkers who touch the robot turn away from it; whether it was walkers."""
+        """Turn walkers who touch the robot away from it. Returns True if there are any."""
         world, footprint = self.world, self.scenario.robot.footprint
         shape, here = placed_footprint(world.pose, footprint), np.array(world.pose[:2])
         disc, touching = self._reach if footprint.is_disc else 0.0, False

@@ -76,7 +76,7 @@ def from_now(mover: Mover, now: float, rest: float) -> Mover | None:
 
 
 def _free_way(place: Floats, along: Floats, radius: float, gaps: Gaps) -> float:
-    """Metres from ``place`` in a direction until a disc would touch what stands."""
+    """Metres from ``place`` in a direction until a disc would touch an obstacle."""
     ways = np.arange(0.0, FAR + STEP, STEP)
     touching = gaps(place + ways[:, None] * along) <= radius
     return float(ways[max(int(touching.argmax()) - 1, 0)] if touching.any() else ways[-1])

@@ -87,7 +87,7 @@ class Bridge:
     # -- what comes in ----------------------------------------------------------------------------
 
     def take(self, topic: str, message: Any) -> str:
-        """Takes in a message of a topic in TAKES; what is wrong with it, in words, or ""."""
+        """Use a message of a topic in TAKES. Returns what is wrong with it, or ""."""
         try:
             if topic == "map" or topic.endswith("_filter_mask"):
                 self._take_layer(topic, message)
@@ -264,7 +264,7 @@ class Bridge:
 
 
 def _late(what: str, stamp: float, now: float, age: float) -> str:
-    """What is wrong with data of a stamp, in words, or ""."""
+    """Describe what is wrong with the stamp of data, or return ""."""
     if not math.isfinite(stamp):
         return f"no {what} has come yet"
     if now - stamp > age:

@@ -62,7 +62,7 @@ def check_frame(what: str, given: str, expected: str) -> None:
 
 
 def grid_of(message: Any, frame: str) -> OccupancyGrid:
-    """The map in an OccupancyGrid; InputError for another frame, size or values that are none."""
+    """The map in an OccupancyGrid. Raises InputError for a wrong frame, size or value."""
     check_frame("the map", message.header.frame_id, frame)
     info = message.info
     rows, columns = int(info.height), int(info.width)

@@ -120,7 +120,7 @@ class World:
         self.obstacles = tuple(rings)
 
     def gaps(self, points: Floats) -> Floats:
-        """Metres (n,) from points (n, 2) to what stands; 0 inside of it, or off the map."""
+        """Metres (n,) from points (n, 2) to the nearest obstacle; 0 inside of one, or off the map."""
         return self._solids.gaps(points)
 
     def place(self, pose: Pose2D) -> None:

@@ -22,7 +22,7 @@ def strew(
     ends: tuple[Point, Point],
     keep: float = 0.0,
 ) -> None:
-    """Things until they cover ``density``; ``keep`` m between the things and what stands already."""
+    """Add obstacles until they cover ``density``, ``keep`` m from those there before."""
     random, covered = layout.random, 0.0
     known = float(random.choice(MAPPED))
     room = robot.footprint.circumscribed + 0.15
