@@ -3,9 +3,11 @@
 from typing import Annotated, Any, NamedTuple
 
 from dynastar.config import Field
-from dynastar.grid import Unknown
-from dynastar.navigator import Preset
+from dynastar.navigator import NavigatorConfig, Preset
+from dynastar.navigator.config import GoalTolerance, HeadingTolerance, Latency, UnknownSpace
 from dynastar.simulation.scenario import AfterLast
+
+DEFAULT = NavigatorConfig()
 
 Metres = Annotated[float, Field("a coordinate", "m", -1e6, 1e6)]
 _Size = Annotated[float, Field("a size", "m", 1e-3, 1e4)]
@@ -29,14 +31,10 @@ class ScenarioTable(NamedTuple):
     time_limit: Annotated[
         float, Field("time after which the mission is a timeout", "s", 0.1, 1e5)
     ] = 300.0
-    latency: Annotated[float, Field("delay until a command takes effect", "s", 0.0, 1.0)] = 0.0
-    unknown: Annotated[Unknown, Field("how unknown space is planned")] = "blocked"
-    goal_tolerance: Annotated[
-        float, Field("distance at which a goal is reached", "m", 0.01, 5.0)
-    ] = 0.25
-    heading_tolerance: Annotated[
-        float, Field("heading error at which a goal is reached", "rad", 0.01, 3.2)
-    ] = 0.1
+    latency: Latency = DEFAULT.latency
+    unknown: UnknownSpace = DEFAULT.unknown
+    goal_tolerance: GoalTolerance = DEFAULT.goal_tolerance
+    heading_tolerance: HeadingTolerance = DEFAULT.heading_tolerance
     preset: Annotated[Preset, Field("the navigator's settings")] = "default"
     sensor: Any = None
     obstacles: Any = None

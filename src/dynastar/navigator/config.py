@@ -11,12 +11,21 @@ from dynastar.planning import PlannerConfig
 CELLS = 4  # of the maps, at least, to a robot's inscribed radius
 
 
+# What scenario files say, too.
+Latency = Annotated[float, Field("delay until a command takes effect", "s", 0.0, 1.0)]
+UnknownSpace = Annotated[Literal["free", "blocked"], Field("how unknown space is planned")]
+GoalTolerance = Annotated[float, Field("distance at which a goal is reached", "m", 0.01, 5.0)]
+HeadingTolerance = Annotated[
+    float, Field("heading error at which a goal is reached", "rad", 0.01, 3.2)
+]
+
+
 @self_checking
 class NavigatorConfig(NamedTuple):
     """The navigator's settings. The no-contact guarantee assumes the declared bounds."""
 
     period: Annotated[float, Field("time between two commands", "s", 0.01, 1.0)] = 0.1
-    latency: Annotated[float, Field("delay until a command takes effect", "s", 0.0, 1.0)] = 0.0
+    latency: Latency = 0.0
     range_error: Annotated[float, Field("largest error of a range reading", "m", 0.0, 1.0)] = 0.01
     pose_error: Annotated[float, Field("largest error of the position", "m", 0.0, 1.0)] = 0.01
     heading_error: Annotated[float, Field("largest error of the heading", "rad", 0.0, 0.5)] = 0.0
@@ -28,15 +37,9 @@ class NavigatorConfig(NamedTuple):
     scan_age: Annotated[
         float, Field("largest age of a scan or state before the robot brakes", "s", 0.05, 5.0)
     ] = 0.3
-    unknown: Annotated[Literal["free", "blocked"], Field("how unknown space is planned")] = (
-        "blocked"
-    )
-    goal_tolerance: Annotated[
-        float, Field("distance at which a goal is reached", "m", 0.01, 5.0)
-    ] = 0.25
-    heading_tolerance: Annotated[
-        float, Field("heading error at which a goal is reached", "rad", 0.01, 3.2)
-    ] = 0.1
+    unknown: UnknownSpace = "blocked"
+    goal_tolerance: GoalTolerance = 0.25
+    heading_tolerance: HeadingTolerance = 0.1
     resolution: Annotated[
         float, Field("largest cell of the maps that are planned and driven on", "m", 0.001, 1.0)
     ] = 0.05

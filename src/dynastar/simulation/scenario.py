@@ -10,11 +10,12 @@ import numpy.typing as npt
 from dynastar.config import Field, self_checking
 from dynastar.geometry import Goal
 from dynastar.grid import OccupancyGrid, Unknown
-from dynastar.navigator import Preset
+from dynastar.navigator import NavigatorConfig, Preset
 from dynastar.robot import Robot
 from dynastar.simulation.faults import Fault
 
 Floats = npt.NDArray[np.float64]
+DEFAULT = NavigatorConfig()
 AfterLast = Literal["loop", "back_and_forth", "stay", "vanish"]
 
 
@@ -78,11 +79,11 @@ class Scenario:
     crowd: tuple[Pedestrian, ...] = ()
     faults: tuple[Fault, ...] = ()
     noise: Noise = Noise()
-    latency: float = 0.0
-    goal_tolerance: float = 0.25
-    heading_tolerance: float = 0.1
+    latency: float = DEFAULT.latency
+    goal_tolerance: float = DEFAULT.goal_tolerance
+    heading_tolerance: float = DEFAULT.heading_tolerance
     time_limit: float = 300.0
-    unknown: Unknown = "blocked"
+    unknown: Unknown = DEFAULT.unknown
     seed: int = 0
     preset: Preset = "default"
     navigator: Mapping[str, Any] = field(default_factory=dict)
