@@ -136,7 +136,7 @@ def score(scene, rules, start, i, candidate, rows):
         hold = rules.long_hold if long else short_hold
         manoeuvre = Manoeuvre(candidate.v, candidate.omega, hold, tail)
         if not roll_out(scene, rules, start, manoeuvre, rows):
-            continue
+            break  # all manoeuvres of a candidate begin alike
         if clear_for > 0.0 and not passes_clear(scene.moving, rules, rows, clear_for):
             continue
         candidate.refused = ADMISSIBLE
