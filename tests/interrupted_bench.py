@@ -43,4 +43,5 @@ def ready(folder):
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # it may have been started ignoring it
     sys.exit(main())
