@@ -99,6 +99,15 @@ def test_what_is_not_a_state_brakes_and_says_what_is_expected(state):
     assert "expected a stamp, a pose and a twist" in going.status.reason
 
 
+@pytest.mark.parametrize("movers", [3, [None], [("a",) * 5], [(1.0, 2.0)]])
+def test_what_is_not_a_moving_obstacle_brakes_and_says_what_is_expected(movers):
+    going = under_way()
+    command = going.navigator.command(going.state, going.scan(), movers)
+    assert 0.0 <= command.v < going.twist.v
+    assert going.status.state == "sensor_lost"
+    assert "expected MovingObstacle" in going.status.reason
+
+
 def test_a_scan_of_words_is_refused_when_it_is_made():
     with pytest.raises(InputError, match="expected numbers"):
         LaserScan("now", np.ones(9), 0.0, 0.1, 0.0, 1.0)

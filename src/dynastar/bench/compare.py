@@ -99,7 +99,7 @@ def compare_suite(name: str, first: Result, second: Result) -> dict[str, Any]:
 
 
 def verdict(lost: int, gained: int, p: float, time: Mapping[str, Any]) -> str:
-    """The second result against the first, in words, by the rule of this module."""
+    """Compare the second result with the first by the rule of this module, as a sentence."""
     if p < SIGNIFICANT:
         return (
             f"{'better' if gained > lost else 'worse'}: {gained} missions gained, {lost} lost "

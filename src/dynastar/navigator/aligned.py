@@ -4,6 +4,7 @@ Both have the same origin. They are the same for a map without yaw: then nothing
 """
 
 import math
+from collections.abc import Iterable
 from typing import TypeVar
 
 import numpy as np
@@ -15,6 +16,17 @@ from dynastar.perception import MovingObstacle, Track
 
 Floats = npt.NDArray[np.float64]
 Disc = TypeVar("Disc", MovingObstacle, Track)
+
+
+def as_moving(movers: Iterable[MovingObstacle] | None) -> list[MovingObstacle] | None:
+    """Moving obstacles with floats for numbers. Raises ValueError for what is not a moving obstacle."""
+    if movers is None:
+        return None
+    try:
+        return [MovingObstacle(*map(float, mover)) for mover in movers]
+    except (TypeError, ValueError):
+        words = "expected MovingObstacle(x, y, vx, vy, radius), all numbers"
+        raise ValueError(f"the moving obstacles are {movers!r:.60}: {words}") from None
 
 
 def turned(points: Floats, angle: float) -> Floats:

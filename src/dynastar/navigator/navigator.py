@@ -13,7 +13,7 @@ from dynastar.dwa.dwa import Choice
 from dynastar.errors import InputError
 from dynastar.geometry import Goal, Pose2D, Twist, as_goals
 from dynastar.grid import OccupancyGrid
-from dynastar.navigator.aligned import turned_disc, turned_goal, turned_pose
+from dynastar.navigator.aligned import as_moving, turned_disc, turned_goal, turned_pose
 from dynastar.navigator.arrival import has_arrived, is_near, turn_to
 from dynastar.navigator.braking import Commands
 from dynastar.navigator.config import NavigatorConfig, fitted
@@ -202,13 +202,17 @@ class Navigator:
         self._choice = None
         state, mission = within_limits(as_floats(state), self.robot.limits), self.mission
         state = state._replace(pose=turned_pose(state.pose, -self._yaw))
-        if movers is not None:
-            movers = [turned_disc(MovingObstacle(*mover), -self._yaw) for mover in movers]
         scans = [] if scan is None else [scan] if isinstance(scan, LaserScan) else list(scan)
         fault = self.sensing.update(state, scans)
+        try:
+            movers = as_moving(movers)
+        except ValueError as error:
+            fault = fault or str(error)
         if fault is not None:
             mission.lose(fault)
             return self._commands.brake(state)
+        if movers is not None:
+            movers = [turned_disc(mover, -self._yaw) for mover in movers]
         if mission.regain():
             self.progress.restart(state.stamp)
         changed = self.planners.mark(self.planning_map.merge(self.sensing.local_map))
