@@ -214,13 +214,23 @@ def straight_lines(clear, points):
     return length[len(points) - 1]
 
 
-def slack_of_constraint(centres, footprint, margin, start, pose):
+def slack_of_constraint(boxes, footprint, margin, start, pose):
     """Slack (m) of the clearance constraint of a footprint at ``pose`` (x, y, cos, sin), cell by cell.
 
-    The footprint keeps ``margin`` from each of ``centres`` (k, 2), or what it had at ``start``.
+    The footprint keeps ``margin`` from each of ``boxes`` (k, 4: low x, high x, low y, high y), or
+    what it had at ``start``.
     """
-    gaps = footprint_gaps(centres, footprint, pose)
-    return float((gaps - np.minimum(margin, footprint_gaps(centres, footprint, start))).min())
+    low_x, high_x, low_y, high_y = boxes.T
+    shapes = shapely.box(low_x, low_y, high_x, high_y)
+    gaps = []
+    for x, y, cos, sin in (pose, start):
+        if footprint.is_disc:
+            away = shapely.distance(shapely.Point(x, y), shapes) - footprint.circumscribed
+        else:
+            placed = footprint.vertices @ np.array([[cos, sin], [-sin, cos]]) + (x, y)
+            away = shapely.distance(shapely.Polygon(placed), shapes)
+        gaps.append(np.maximum(away, 0.0))
+    return float((gaps[0] - np.minimum(margin, gaps[1])).min())
 
 
 def footprint_gaps(centres, footprint, pose):

@@ -1,9 +1,12 @@
 """Scenes for a dynamic window, made by hand."""
 
+import math
+
 import numpy as np
 
 from dynastar.clearance import lower_bounds
 from dynastar.dwa import DwaConfig, Scene
+from dynastar.dwa.clearance import Closed
 from dynastar.dwa.dwa import rules_of
 from dynastar.dwa.rollout import Start
 from dynastar.dwa.scene import AT_REST
@@ -14,6 +17,7 @@ from dynastar.guidance.cost_to_go import find_descent
 from dynastar.guidance.marching import extend, march, queue_for
 from dynastar.perception import PredictionConfig
 from dynastar.perception.hidden import Hidden
+from dynastar.perception.local_map_kernels import BOX
 from dynastar.perception.prediction import predict
 
 CELL, SIDE = 0.05, 160  # 8 x 8 m, from (0, 0)
@@ -45,6 +49,22 @@ def scattered(random, fraction=0.004):
 def field_of(closed):
     """The distance field of closed cells."""
     return Field(lower_bounds((~closed).astype(np.uint8), CELL), 0.0, 0.0, CELL)
+
+
+def closed_space(closed):
+    """Closed cells, in each of which a hit lies at the centre."""
+    return Closed(field_of(closed), closed, np.zeros(closed.shape, BOX))
+
+
+def boxes_of(closed):
+    """The boxes (k, 4: low x, high x, low y, high y) in metres of what may stand in a ``Closed``."""
+    cells = np.argwhere(closed.distance.values == 0.0)
+    half = CELL / math.sqrt(2.0)
+    whole = np.array([-half, half, -half, half])
+    hits = closed.hits[tuple(cells.T)]
+    hits = np.column_stack([hits[name] for name in hits.dtype.names])
+    boxes = np.where(closed.occupied[tuple(cells.T)][:, None], hits, whole)
+    return boxes + ((cells[:, ::-1] + 0.5) * CELL).repeat(2, axis=1)
 
 
 def centres_of(closed):
@@ -86,14 +106,14 @@ def scene_of(closed, goal=(7.0, 4.0), moving=(), radius=0.3, margin=0.05, latenc
     """
     distance = field_of(closed)
     scene = Scene(
-        distance_to_unknown=distance,
+        closed=closed_space(closed),
         distance_to_obstacle=distance,
         distance_to_path=distance,
         cost_to_go=cost_to_go_to(goal, closed, radius + margin),
         moving=predict(moving, PredictionConfig(), (latency, STEP, STEPS)),
         hidden=NOTHING_HIDDEN,
         margin=margin,
-        margin_to_unknown=margin,
+        margin_to_closed=margin,
         latency=latency,
         last=AT_REST,
         v_cap=9.0,

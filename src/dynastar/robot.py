@@ -25,6 +25,12 @@ class Limits(NamedTuple):
     v_brake: Annotated[float, Field("largest deceleration", "m/s2", 0.01, 100.0)]
     omega_brake: Annotated[float, Field("largest angular deceleration", "rad/s2", 0.01, 200.0)]
     v_min: Annotated[float, Field("smallest speed, negative to reverse", "m/s", -20.0, 0.0)] = 0.0
+    v_least: Annotated[
+        float, Field("speed below which the drive does not move, either way", "m/s", 0.0, 5.0)
+    ] = 0.0
+    omega_least: Annotated[
+        float, Field("turning rate below which the drive does not turn", "rad/s", 0.0, 5.0)
+    ] = 0.0
 
 
 @self_checking

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dynastar import robot as drive
+from dynastar.dwa import DwaConfig
 from dynastar.dwa.admissible import (
     ADMISSIBLE,
     HIDDEN,
@@ -15,6 +16,7 @@ from dynastar.dwa.admissible import (
     hidden_gap,
     rests_in_time,
 )  # fmt: skip
+from dynastar.dwa.dwa import body_of, rules_of
 from dynastar.dwa.motion import driven, moved, state_at
 from dynastar.geometry import Pose2D, Twist
 from dynastar.perception import MovingObstacle
@@ -24,7 +26,7 @@ from scenes import (
     CELL,
     PERIOD,
     boxed,
-    centres_of,
+    boxes_of,
     empty,
     hidden_in,
     rules_for,
@@ -107,16 +109,28 @@ def test_the_robot_drives_at_a_wall_as_fast_as_it_can_stop(name):
             assert certify(scene, robot, state, (v, 0.0)) == expected
 
 
+@pytest.mark.parametrize("error", [0.05, 0.2])
+def test_a_drive_that_is_faster_than_told_stops_before_a_wall_too(error):
+    scene, wall, v = scene_of(boxed((6.0, 0.0, 6.2, 8.0)), margin=MARGIN), 6.0, 1.0
+    room = (1.0 + error) * (v * PERIOD + v * v / (2.0 * WEAK.v_brake))
+    for slack, expected in ((0.01, ADMISSIBLE), (-0.01, NO_STOP)):
+        x = wall + 0.5 * CELL - MARGIN - 0.3 - room - slack
+        rules = rules_of(ROUND, DwaConfig(), PERIOD, drive_error=error)
+        state = state_at(x, 4.0, 0.0, v, 0.0)
+        assert certified_stop(scene, rules, state, (v, 0.0)) == expected
+
+
 @given(st.sampled_from(sorted(SHAPES)), st.integers(0, 10**6))
 @settings(max_examples=150, deadline=None)
 def test_a_stop_is_certified_if_and_only_if_its_whole_sweep_keeps_clear(name, seed):
     robot, random = SHAPES[name], np.random.default_rng(seed)
     closed = scattered(random, random.choice([0.0003, 0.001, 0.003]))
-    scene, centres = scene_of(closed, margin=MARGIN), centres_of(closed)
+    scene = scene_of(closed, margin=MARGIN)
+    boxes = boxes_of(scene.closed)
     v, omega = random.uniform(-0.4, 1.2), random.uniform(-1.5, 1.5)
     state = state_at(*random.uniform(1.0, 7.0, 2), random.uniform(-4, 4), v, omega)
     start = state.pose
-    near = centres[np.hypot(*(centres - (start.x, start.y)).T) < 4.0]
+    near = boxes[np.hypot(*(boxes[:, ::2] - (start.x, start.y)).T) < 4.0]
     command = reachable_command(random, robot.limits, v, omega)
     certified = certify(scene, robot, state, command) == ADMISSIBLE
 
@@ -198,9 +212,17 @@ def corner(speed):
     return hidden_in(np.tile(np.maximum(5.0 - x, 0.0), (80, 1)), speed)
 
 
-def test_the_gap_to_a_hidden_person():
-    assert hidden_gap(corner(0.5), 4.05, 4.0) == pytest.approx(0.95 - 0.25, abs=0.01)
-    assert hidden_gap(corner(0.5), -0.1, 4.0) == hidden_gap(corner(0.5), 8.1, 4.0) == 0.0
+def test_the_gap_to_a_hidden_person_is_that_from_the_footprint():
+    disc = body_of(ROUND)
+    ahead, behind = state_at(4.05, 4.0, 0.0, 0.0, 0.0).pose, state_at(4.05, 4.0, math.pi, 0, 0).pose
+    assert hidden_gap(corner(0.5), disc, ahead, 1.0) == pytest.approx(0.95 - 0.25 - 0.3, abs=0.01)
+    for x in (-0.1, 8.1):  # off the field
+        off = state_at(x, 4.0, 0.0, 0.0, 0.0).pose
+        assert hidden_gap(corner(0.5), disc, off, 1.0) < -0.25
+    nose = Footprint.polygon([(0.6, -0.2), (0.6, 0.2), (-0.1, 0.2), (-0.1, -0.2)])
+    cart = body_of(Robot("cart", WEAK, nose))
+    assert hidden_gap(corner(0.5), cart, ahead, 1.0) == pytest.approx(0.95 - 0.25 - 0.6, abs=0.05)
+    assert hidden_gap(corner(0.5), cart, behind, 1.0) == pytest.approx(0.95 - 0.25 - 0.1, abs=0.05)
 
 
 @pytest.mark.parametrize("speed", [0.3, 0.5, 1.0])

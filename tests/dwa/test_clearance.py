@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from dynastar.dwa import body_of
 from dynastar.dwa.clearance import (
     EXACT_WITHIN,
+    Closed,
     body_distance,
     clearance_slack,
     distance_at,
@@ -16,9 +17,19 @@ from dynastar.dwa.clearance import (
     polygon_distance,
 )
 from dynastar.dwa.motion import Pose
+from dynastar.perception.local_map_kernels import BOX
 from dynastar.robot import ROBOTS, Footprint, Robot
 from naive import footprint_gaps, slack_of_constraint
-from scenes import CELL, boxed, centres_of, empty, field_of, scattered
+from scenes import (
+    CELL,
+    boxed,
+    boxes_of,
+    centres_of,
+    closed_space,
+    empty,
+    field_of,
+    scattered,
+)
 
 FOOTPRINTS = {
     "disc": Footprint.disc(0.3),
@@ -85,21 +96,31 @@ def test_the_least_clearance_is_that_to_the_nearest_cell_where_it_is_small(name,
         assert true - CELL <= found <= true + (0.0 if name == "disc" else between) + 1e-6
 
 
+def random_space(random):
+    """Closed cells of which some are occupied, with boxes of hits in them."""
+    closed = scattered(random, random.choice([0.0005, 0.004, 0.03]))
+    hits = np.zeros(closed.shape, BOX)
+    for low, high in (("low_x", "high_x"), ("low_y", "high_y")):
+        ends = np.sort(random.uniform(-0.5 * CELL, 0.5 * CELL, (2, *closed.shape)), axis=0)
+        hits[low], hits[high] = ends
+    return Closed(field_of(closed), closed & (random.random(closed.shape) < 0.7), hits)
+
+
 @given(footprints, st.integers(0, 10**6))
 @settings(max_examples=60, deadline=None)
 def test_the_slack_is_that_of_the_constraint_cell_by_cell(name, seed):
     random = np.random.default_rng(seed)
-    closed = scattered(random, random.choice([0.0005, 0.004, 0.03]))
-    field, centres = field_of(closed), centres_of(closed)
+    closed = random_space(random)
+    boxes = boxes_of(closed)
     start = at(*random.uniform(0.3, 7.7, 2), random.uniform(-4, 4))
     for _ in range(6):
         pose = at(*random.normal((start.x, start.y), 0.15), random.uniform(-4, 4))
-        found = clearance_slack(field, body(name), MARGIN, start, pose)
-        true = slack_of_constraint(centres, FOOTPRINTS[name], MARGIN, start, pose)
+        found = clearance_slack(closed, body(name), MARGIN, start, pose)
+        true = slack_of_constraint(boxes, FOOTPRINTS[name], MARGIN, start, pose)
         assert (found < -1e-6) == (true < -1e-6)
         assert found >= true - 1e-6 if true < 0.0 else found <= true + 1e-5
         if 0.0 <= true < CELL and found < CELL - 1e-9:  # near zero it is exact
-            near = distance_at(field, pose.x, pose.y) - body(name).circumscribed
+            near = distance_at(closed.distance, pose.x, pose.y) - body(name).circumscribed
             assert found == pytest.approx(true, abs=1e-6) or near >= MARGIN
 
 
@@ -108,44 +129,53 @@ def test_a_cell_that_was_nearer_at_the_start_may_stay_as_near_but_not_come_neare
     front = 0.3 if name == "disc" else FOOTPRINTS[name].vertices[:, 0].max()
     closed = boxed((4.0, 3.9, 4.05, 4.1))  # its centres are at x = 4.025
     start = at(4.025 - front - 0.03, 4.0)
-    field = field_of(closed)
-    assert clearance_slack(field, body(name), MARGIN, start, start) == pytest.approx(0.0, abs=1e-5)
-    assert clearance_slack(field, body(name), MARGIN, start, at(start.x - 0.01, 4.0)) >= 0.0
-    assert clearance_slack(field, body(name), MARGIN, start, at(start.x + 0.01, 4.0)) < -0.005
+    space = closed_space(closed)
+    assert clearance_slack(space, body(name), MARGIN, start, start) == pytest.approx(0.0, abs=1e-5)
+    assert clearance_slack(space, body(name), MARGIN, start, at(start.x - 0.01, 4.0)) >= 0.0
+    assert clearance_slack(space, body(name), MARGIN, start, at(start.x + 0.01, 4.0)) < -0.005
     far = at(start.x - 0.5, 4.0)  # from farther away the whole margin counts
-    assert clearance_slack(field, body(name), MARGIN, far, start) == pytest.approx(-0.03, abs=0.01)
+    assert clearance_slack(space, body(name), MARGIN, far, start) == pytest.approx(-0.03, abs=0.01)
 
 
 @pytest.mark.parametrize("name", sorted(FOOTPRINTS))
 def test_a_closed_cell_inside_the_footprint_does_not_void_the_check_of_others(name):
     closed = boxed((4.0, 4.0, 4.05, 4.05), (4.8, 3.0, 4.9, 5.0))
     start = at(4.0, 4.0)
-    field = field_of(closed)
-    assert clearance_slack(field, body(name), MARGIN, start, start) == 0.0
-    assert clearance_slack(field, body(name), MARGIN, start, at(4.05, 4.0)) == 0.0
-    assert clearance_slack(field, body(name), MARGIN, start, at(4.6, 4.0)) < -1e-3
+    space = closed_space(closed)
+    assert clearance_slack(space, body(name), MARGIN, start, start) == 0.0
+    assert clearance_slack(space, body(name), MARGIN, start, at(4.05, 4.0)) == 0.0
+    assert clearance_slack(space, body(name), MARGIN, start, at(4.6, 4.0)) < -1e-3
 
 
 def test_space_outside_the_field_counts_as_closed():
     assert distance_at(field_of(empty()), -1.0, 4.0) == 0.0
     assert (
-        clearance_slack(field_of(empty()), body("disc"), MARGIN, at(4.0, 4.0), at(0.2, 4.0)) < 0.0
+        clearance_slack(closed_space(empty()), body("disc"), MARGIN, at(4.0, 4.0), at(0.2, 4.0))
+        < 0.0
     )
 
 
 @given(footprints, st.floats(0.0, 0.3), st.floats(0.0, 0.3))
 @settings(max_examples=200, deadline=None)
-def test_the_margin_kept_is_at_most_the_gap_but_covers_half_a_diagonal(name, margin, gap):
-    """Never under half a cell's diagonal, as far as the margin goes: the obstacle may fill its cell."""
+def test_the_margin_kept_is_at_most_the_gap_but_half_of_the_margin_at_least(name, margin, gap):
     closed = empty()
     closed[80, 80] = True
     shape, (x, y) = body(name), ((80 + 0.5) * CELL, (80 + 0.5) * CELL)
-    kept = kept_margin(field_of(closed), shape, margin, at(x - reach_ahead(shape) - gap, y))
-    least = min(margin, max(0.5 * margin, CELL / math.sqrt(2.0)))
-    most = min(margin, max(least, gap))
-    assert least <= kept <= most + 1e-6  # the gap is known by a lower bound only
+    kept = kept_margin(closed_space(closed), shape, margin, at(x - reach_ahead(shape) - gap, y))
+    assert 0.5 * margin <= kept <= min(margin, max(0.5 * margin, gap)) + 1e-6
     if name == "disc" and gap > margin + CELL:
         assert kept == margin
+
+
+def test_an_obstacle_may_be_half_a_diagonal_from_the_centre_of_a_cell_without_hits():
+    closed = empty()
+    closed[80, 80] = True
+    space = closed_space(closed)._replace(occupied=np.zeros(closed.shape, bool))
+    x, pose = (80 + 0.5) * CELL, at((80 + 0.5) * CELL - 0.3 - 0.05, (80 + 0.5) * CELL)
+    far = at(pose.x - 1.0, pose.y)
+    assert clearance_slack(space, body("disc"), 0.01, far, pose) == pytest.approx(
+        x - CELL / math.sqrt(2.0) - pose.x - 0.3 - 0.01, abs=1e-6
+    )
 
 
 def reach_ahead(shape):

@@ -6,14 +6,27 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dynastar import robot
-from dynastar.dwa.motion import Pose, State, coast, driven, moved, slew, state_at, stopping_time
+from dynastar.dwa.motion import (
+    STATE,
+    Pose,
+    State,
+    coast,
+    driveable,
+    driven,
+    moved,
+    slew,
+    state_at,
+    state_of,
+    stopping_time,
+)
 from dynastar.geometry import Twist
 from dynastar.robot import Limits
 
 START = Pose(0.3, -0.2, math.cos(0.7), math.sin(0.7))
+NO_LEAST = {"v_least": st.just(0.0), "omega_least": st.just(0.0)}
 rates = st.floats(0.1, 5.0)
 limits_ = st.builds(
-    Limits, st.just(2.0), st.just(2.0), rates, rates, rates, rates, v_min=st.just(-1.0)
+    Limits, st.just(2.0), st.just(2.0), rates, rates, rates, rates, v_min=st.just(-1.0), **NO_LEAST
 )
 
 
@@ -89,3 +102,20 @@ def test_commands_under_way_take_the_robot_where_the_drive_does(limits, v, omega
     assert (after.pose.cos, after.pose.sin) == pytest.approx(
         (math.cos(9.0 + turned), math.sin(9.0 + turned))
     )
+
+
+@given(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0), st.floats(0.0, 0.5))
+def test_a_drive_follows_no_command_below_its_least_speed(command, wanted, least):
+    found = driveable(command, wanted, least)
+    assert found == 0.0 or abs(found) >= least
+    if abs(command) >= least:
+        assert found == command
+    elif abs(wanted) >= least:
+        assert found * wanted >= 0.0
+        assert abs(found) == least
+
+
+def test_a_state_comes_back_from_its_record():
+    state = state_at(1.0, 2.0, 0.5, 0.3, -0.2)
+    record = np.array([(*state.pose, state.v, state.omega)], STATE)
+    assert state_of(record[0]) == state

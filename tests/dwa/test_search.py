@@ -162,7 +162,7 @@ def test_the_robot_passes_before_an_obstacle_where_a_stop_would_end_in_its_way()
     pose, twist = Pose2D(3.0, 4.0, 0.0), Twist(1.0, 0.0)
     scene = scene_of(empty(), moving=[obstacle], last=Manoeuvre(1.0, 0.0, 0.5, FOLLOW))
     window = DynamicWindow(ROUND, DwaConfig(), PERIOD)
-    assert not window.admits(pose, twist, scene, Twist(1.0, 0.0))
+    assert not window.admits(scene, [(pose, twist)], Twist(1.0, 0.0))
     choice = window.choose(pose, twist, scene)
     assert choice.command is not None
     assert choice.command.v > 0.9
@@ -226,6 +226,33 @@ def test_without_room_in_the_window_there_is_one_sample():
     choice = window.choose(Pose2D(4.0, 4.0, 0.0), Twist(0.0, 0.3), scene)
     assert len(choice.samples) == SAMPLES + 1
     assert choice.samples[SAMPLES] == pytest.approx((0.0, 0.3))
+
+
+def test_a_stop_is_certified_from_every_state_given():
+    near_wall = (Pose2D(5.2, 4.0, 0.0), Twist(1.0, 0.0))
+    far = (Pose2D(2.0, 4.0, 0.0), Twist(1.0, 0.0))
+    scene, window = scene_of(boxed((6.0, 0.0, 6.2, 8.0))), DynamicWindow(ROUND, DwaConfig(), PERIOD)
+    for stops, admitted in (
+        ([far], True), ([near_wall], False), ([near_wall, far], False), ([far, near_wall], False)
+    ):  # fmt: skip
+        assert window.admits(scene, stops, Twist(1.0, 0.0)) == admitted
+        choice = window.choose(*far, scene, stops)
+        assert (choice.refusals["no certified stop"] == 0) == admitted
+
+
+def test_no_command_is_below_the_least_speeds_of_the_drive():
+    slow = LIMITS._replace(v_accel=0.3, omega_accel=0.5, v_least=0.1, omega_least=0.2)
+    robot = Robot("deadband", slow, Footprint.disc(0.3))
+    commands = [
+        choice.command
+        for _, _, choice in drive(empty(), (1.0, 2.0, 2.5), (7.0, 4.0), 12.0, robot)
+        if choice.command is not None
+    ]
+    assert len(commands) > 100
+    for v, omega in commands:
+        assert v == 0.0 or abs(v) >= 0.1
+        assert omega == 0.0 or abs(omega) >= 0.2
+    assert sum(v > 0.5 for v, _ in commands) > 20
 
 
 def slow_choice(rules, state, scene, choice):

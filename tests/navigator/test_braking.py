@@ -37,6 +37,8 @@ limits_ = st.builds(
     v_brake=st.floats(0.2, 3.0),
     omega_brake=st.floats(0.2, 5.0),
     v_min=st.just(0.0),
+    v_least=st.just(0.0),
+    omega_least=st.just(0.0),
 )
 
 
@@ -86,6 +88,52 @@ def test_the_next_command_goes_on_from_the_last_one_near_the_measured_speed(limi
         assert twist.v == sent.v
     if abs(sent.omega - measured.omega) <= near_omega:
         assert twist.omega == sent.omega
+
+
+@pytest.mark.parametrize("latency", [0.0, 0.1, 0.25])
+def test_stops_are_certified_for_every_latency_up_to_the_declared_one(latency):
+    """A drive that acts at any of these latencies is near one of the states."""
+    limits, period = ROBOTS["paper"].limits, 0.1
+    commands, sent = Commands(limits, period, latency), []
+    pose, twist = Pose2D(0.0, 0.0, 0.0), Twist(0.4, 0.0)
+    for k, command in enumerate([Twist(0.45, 0.03), Twist(0.5, 0.06), Twist(0.55, 0.03)]):
+        state = RobotState(k * period, pose, twist)
+        commands.send(state, command)
+        sent.append((state.stamp, command))
+    state = RobotState(3 * period, pose, twist)
+    acting = commands.when_one_acts(state)
+    stops = commands.stops_from(state, acting, commands.carried_on(acting[1]))
+    assert len(stops) == 1 + math.ceil(latency / 0.1)
+    assert stops[-1][0] == acting[0]
+    for true in np.linspace(0.0, latency, 6):
+        expected, _ = commands.when_one_acts(state, float(true))
+        near = min(math.dist(expected[:2], stop[:2]) for stop, _ in stops)
+        assert near <= 0.5 * 0.1 * 0.55 + 1e-9
+    for _, (v, _) in stops:
+        assert v >= twist.v
+
+
+@pytest.mark.parametrize(("declared", "true"), [(0.3, 0.0), (0.3, 0.1), (0.2, 0.2)])
+def test_a_latency_smaller_than_declared_causes_no_contact(declared, true):
+    robot, random = ROBOTS["jackal"], np.random.default_rng(3)
+    known = np.pad(np.zeros((158, 278), np.int8), 1, constant_values=100)
+    for start in (2.0, 4.0, 6.0):
+        cells = known.copy()
+        for x, y in random.uniform((2.5, 0.5), (11.0, 7.0), (8, 2)) / 0.05:
+            cells[int(y) : int(y) + 12, int(x) : int(x) + 12] = 100
+        cells[int(start / 0.05) - 12 : int(start / 0.05) + 12, :40] = known[:24, 10:11]
+        cells[:, 0] = 100
+        scenario = Scenario(
+            "boxes", OccupancyGrid(cells, 0.05), robot, (1.2, start, 0.0), (), latency=true
+        )
+        world = World(scenario, Pose2D(1.2, start, 0.0))
+        navigator = Navigator(OccupancyGrid(known, 0.05), robot, NavigatorConfig(latency=declared))
+        navigator.set_goal((12.5, 8.0 - start))
+        while navigator.mission.under_way and world.time < 40.0 and not world.contact:
+            state = RobotState(world.time, world.pose, world.twist)
+            world.step(navigator.command(state, world.scan()), 0.1)
+        assert not world.contact
+        assert navigator.status.state == "arrived"
 
 
 HALL = OccupancyGrid(np.pad(np.zeros((158, 398), np.int8), 1, constant_values=100), 0.05)

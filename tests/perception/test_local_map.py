@@ -102,6 +102,51 @@ def test_a_later_scan_clears_what_has_gone():
     assert state(local_map, 2.02, 0.02) == SEEN_FREE
 
 
+def box_at(local_map, x, y):
+    """The box of the hits in the cell of a point: low x, high x, low y, high y (m, map frame)."""
+    row, column = index(local_map, x, y)
+    offsets = [float(local_map.boxes[row, column][name]) for name in local_map.boxes.dtype.names]
+    x0, y0 = np.array(local_map.origin) + (np.array([column, row]) + 0.5) * local_map.resolution
+    return np.array(offsets) + (x0, x0, y0, y0)
+
+
+def wall(distance, stamp):
+    """A scan of a wall across the x axis, 90 degrees wide."""
+    angles = -math.pi / 4 + np.arange(N) * (math.pi / 2) / (N - 1)
+    return scan(distance / np.cos(angles), stamp, fov=math.pi / 2)
+
+
+def test_the_box_of_a_cell_holds_all_hits_in_it():
+    x = 2.025
+    near, far = wall(x - 0.01, 1.0), wall(x + 0.015, 1.1)
+    for scans, low, high in ([near], -0.01, -0.01), ([near, far], -0.01, 0.015):
+        local_map = map_after(*scans)
+        assert state(local_map, x, 0.02) == SEEN_OCCUPIED
+        box = box_at(local_map, x, 0.02)
+        assert box[:2] == pytest.approx((x + low, x + high), abs=1e-5)
+        assert 0.0 <= box[2] < 0.01 < 0.04 < box[3] <= 0.05
+
+
+def test_a_box_begins_anew_where_a_cell_was_free_for_long_or_its_hits_are_forgotten():
+    x = 2.025
+    near, far = wall(x - 0.015, 1.0), wall(x - 0.005, 3.2)
+    for between in [wall(4.0, 3.0)], []:
+        local_map = map_after(near, *between, far)
+        low = -0.005 if between else -0.015
+        assert box_at(local_map, x, 0.02)[0] == pytest.approx(x + low, abs=1e-5)
+    config = LocalMapConfig(size=12.0, memory=2.0)
+    assert box_at(map_after(near, far, config=config), x, 0.02)[0] == pytest.approx(x - 0.005)
+
+
+def test_boxes_move_with_the_window_and_are_whole_cells_on_another_lattice():
+    local_map = map_after(wall(2.015, 1.0))
+    local_map.follow(3.0, -2.0)
+    assert box_at(local_map, 2.025, 0.02)[:2] == pytest.approx((2.015, 2.015), abs=1e-5)
+    other = local_map.moved_onto(0.04, (0.0, 0.0))
+    half = 0.04 / math.sqrt(2.0)
+    assert box_at(other, 2.025, 0.02)[:2] == pytest.approx((2.02 - half, 2.02 + half), abs=1e-5)
+
+
 def test_a_gap_in_the_field_of_view_stays_unseen():
     local_map = map_after(scan(2.0, fov=math.radians(270)))
     assert state(local_map, 1.0, 0.0) == SEEN_FREE

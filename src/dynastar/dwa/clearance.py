@@ -1,14 +1,38 @@
 """How near a footprint at a pose comes to space that was not observed free."""
 
 import math
+from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from dynastar.compiled import inner, njit
 from dynastar.dwa.motion import Pose
-from dynastar.field import bilinear, is_inside
+from dynastar.field import Field, bilinear, is_inside
 
+HALF_DIAGONAL = 1.0 / math.sqrt(2.0)  # of a cell
 EXACT_WITHIN = 0.3  # m between obstacle and footprint, beyond which its circle stands for it
+
+
+class Closed(NamedTuple):
+    """Cells that were not observed free: ``distance`` to the nearest, and what stands in them.
+
+    ``hits`` (rows, columns) are the boxes of the hits in the cells that are ``occupied``, metres from
+    a cell's centre. In the others an obstacle may be up to half a diagonal from the centre.
+    """
+
+    distance: Field
+    occupied: npt.NDArray[np.bool_]
+    hits: npt.NDArray[Any]
+
+
+class Box(NamedTuple):
+    """An axis-parallel rectangle in the map frame, metres."""
+
+    low_x: float
+    high_x: float
+    low_y: float
+    high_y: float
 
 
 @inner
@@ -27,10 +51,10 @@ def distance_at(field, x, y):
 
 
 @inner
-def least_clearance(field, body, pose):
-    """Metres from the footprint to the nearest marked cell's centre; exact where it matters."""
+def least_clearance(field, body, pose, enough=EXACT_WITHIN):
+    """Metres from the footprint to the nearest marked cell's centre; exact up to ``enough`` (m)."""
     distance = distance_at(field, pose.x, pose.y)
-    if distance - body.circumscribed > EXACT_WITHIN:
+    if distance - body.circumscribed > enough:
         return distance - body.circumscribed
     least = distance - body.inscribed
     for i in range(len(body.probes)):
@@ -71,36 +95,80 @@ def body_distance(body, pose, x, y):
 
 
 @inner
-def clearance_slack(field, body, margin, start, pose):
+def box_distance(box, x, y):
+    """Distance (m) from a point to a box, 0 inside."""
+    dx = max(box.low_x - x, 0.0, x - box.high_x)
+    dy = max(box.low_y - y, 0.0, y - box.high_y)
+    return math.sqrt(dx * dx + dy * dy)
+
+
+@inner
+def closed_box(closed, row, column):
+    """The box in the map frame of what may stand in a closed cell: its hits, or all of the cell."""
+    a = closed.distance.resolution
+    x, y = closed.distance.x0 + (column + 0.5) * a, closed.distance.y0 + (row + 0.5) * a
+    if closed.occupied[row, column]:
+        box = closed.hits[row, column]
+        return Box(x + box.low_x, x + box.high_x, y + box.low_y, y + box.high_y)
+    half = a * HALF_DIAGONAL
+    return Box(x - half, x + half, y - half, y + half)
+
+
+@inner
+def body_box_distance(body, pose, box):
+    """Distance (m) from the footprint at ``pose`` to a box that is smaller than it, 0 where they meet."""
+    n = len(body.vertices)
+    if n == 0:
+        return max(0.0, box_distance(box, pose.x, pose.y) - body.circumscribed)
+    least = min(
+        body_distance(body, pose, box.low_x, box.low_y),
+        body_distance(body, pose, box.low_x, box.high_y),
+        body_distance(body, pose, box.high_x, box.low_y),
+        body_distance(body, pose, box.high_x, box.high_y),
+    )
+    for i in range(n):
+        ahead, left = body.vertices[i, 0], body.vertices[i, 1]
+        x = pose.x + pose.cos * ahead - pose.sin * left
+        y = pose.y + pose.sin * ahead + pose.cos * left
+        least = min(least, box_distance(box, x, y))
+    return least
+
+
+@inner
+def clearance_slack(closed, body, margin, start, pose, enough=0.0):
     """Slack (m) of the clearance constraint at ``pose``, negative if violated.
 
-    The constraint: the footprint keeps ``margin`` from the centre of every marked cell of ``field``,
-    or its distance at ``start`` if that was smaller. The slack is exact only within a cell of 0.
+    The constraint: the footprint keeps ``margin`` from the box of every closed cell, or its distance
+    at ``start`` if that was smaller. The slack is exact only up to ``enough`` (m), a cell at least.
     """
-    distance, a = distance_at(field, pose.x, pose.y), field.resolution
-    if distance - body.circumscribed >= margin:
-        return distance - body.circumscribed - margin
+    field, a = closed.distance, closed.distance.resolution  # no box reaches further from its centre
+    enough = max(enough, a)
+    distance = distance_at(field, pose.x, pose.y) - body.circumscribed - a - margin
+    if distance >= enough:
+        return distance
     rows, columns = field.values.shape
-    reach = body.circumscribed + margin + a
+    reach = body.circumscribed + margin + enough + a
     first = max(0, int((pose.y - reach - field.y0) / a))
     last = min(rows - 1, int((pose.y + reach - field.y0) / a))
     low = max(0, int((pose.x - reach - field.x0) / a))
     high = min(columns - 1, int((pose.x + reach - field.x0) / a))
-    least = a
+    least = enough
     for row in range(first, last + 1):
-        y = field.y0 + (row + 0.5) * a
         column = low
         while column <= high:
             to_marked = field.values[row, column]
             if to_marked > 0.0:  # no cell is marked nearer than that
                 column += max(1, int(to_marked / a))
                 continue
-            x = field.x0 + (column + 0.5) * a
+            box = closed_box(closed, row, column)
             column += 1
-            near = body_distance(body, pose, x, y)
+            rough = box_distance(box, pose.x, pose.y) - body.circumscribed
+            if rough - margin >= least:
+                continue
+            near = body_box_distance(body, pose, box)
             if near - margin >= least:
                 continue
-            allowed = min(margin, body_distance(body, start, x, y))
+            allowed = min(margin, body_box_distance(body, start, box))
             least = min(least, near - allowed)
             if least < -1e-6:
                 return least
@@ -108,13 +176,11 @@ def clearance_slack(field, body, margin, start, pose):
 
 
 @njit(cache=True)
-def kept_margin(field, body, margin, pose):
-    """The margin (m) that a robot at ``pose`` keeps from every marked cell of ``field``.
+def kept_margin(closed, body, margin, pose):
+    """The margin (m) that a robot at ``pose`` keeps from every closed cell.
 
     Noise may mark a cell nearer to the robot than its margin. Beside a wall it could then move
-    neither along it nor away, so it keeps what it has, but at least half of the margin, and half
-    a cell's diagonal: the obstacle may stand anywhere in the cell.
+    neither along it nor away, so it keeps what it has, but at least half of the margin.
     """
     nowhere = Pose(1e9, 1e9, 1.0, 0.0)
-    least = min(margin, max(0.5 * margin, field.resolution / math.sqrt(2.0)))
-    return min(margin, max(least, clearance_slack(field, body, 0.0, nowhere, pose)))
+    return min(margin, max(0.5 * margin, clearance_slack(closed, body, 0.0, nowhere, pose, margin)))

@@ -1,5 +1,7 @@
 """The dynamic window approach (IV.B, Eqs. 5-9): which speeds to command next, and why."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -8,7 +10,7 @@ import numpy.typing as npt
 
 from dynastar.dwa import admissible
 from dynastar.dwa.config import DwaConfig, Weights
-from dynastar.dwa.motion import State, state_at
+from dynastar.dwa.motion import STATE, state_at
 from dynastar.dwa.rollout import ROW, Schedule, schedule_of
 from dynastar.dwa.scene import AT_REST, Manoeuvre, Scene
 from dynastar.dwa.search import CANDIDATE, SAMPLES, is_admissible, search
@@ -17,12 +19,14 @@ from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import Limits, Robot
 
 Floats = npt.NDArray[np.float64]
+Stops = Sequence[tuple[Pose2D, Twist]]
 TERMS = Terms._fields
 REFUSALS = {
     admissible.NO_STOP: "no certified stop",
     admissible.MOVING: "moving obstacle",
     admissible.HIDDEN: "unseen space",
 }
+PROBES_APART = 0.3  # m between the points that stand for a polygon's outline, at most
 LONG_HOLD = 1.5  # s that a sample is held for at the longest
 FULL_SPEED = 0.95  # of a speed limit, from which on the robot drives at it
 
@@ -40,8 +44,8 @@ class Rules(NamedTuple):
     """What does not change from tick to tick: robot, weights of Eq. 9, times, and settings.
 
     Samples are held as long as ``schedule`` says, or for ``long_hold`` (s). ``risk_radius`` (m) is
-    that of the disc that stands for the robot in the risk; the other settings are those of
-    ``DwaConfig``.
+    that of the disc that stands for the robot in the risk, ``drive_error`` the fraction by which speeds
+    may be off, with ``fast_limits`` then; the other settings are those of ``DwaConfig``.
     """
 
     body: Body
@@ -56,17 +60,22 @@ class Rules(NamedTuple):
     comfort: float
     hysteresis: float
     risk_radius: float
+    drive_error: float
+    fast_limits: Limits
 
 
 def body_of(robot: Robot) -> Body:
     """A robot's footprint for the kernels."""
     shape = robot.footprint
-    corners = shape.vertices
-    points = np.vstack([corners, 0.5 * (corners + np.roll(corners, 1, axis=0))])
-    return Body(corners, points, shape.inscribed, shape.circumscribed)
+    corners, points = shape.vertices, [shape.vertices]
+    for corner, following in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        parts = max(2, math.ceil(math.dist(corner, following) / PROBES_APART))
+        inside = np.linspace(0.0, 1.0, parts + 1)[1:-1, None]
+        points.append(corner + inside * (following - corner))
+    return Body(corners, np.vstack(points), shape.inscribed, shape.circumscribed)
 
 
-def rules_of(robot: Robot, config: DwaConfig, period: float) -> Rules:
+def rules_of(robot: Robot, config: DwaConfig, period: float, drive_error: float = 0.0) -> Rules:
     """What the kernels need to know of a robot, its settings and the time between commands (s)."""
     step = min(config.step, config.arc_time / 4)
     held = max(4, round(config.arc_time / step))
@@ -86,6 +95,8 @@ def rules_of(robot: Robot, config: DwaConfig, period: float) -> Rules:
         comfort=config.comfort,
         hysteresis=config.hysteresis,
         risk_radius=0.5 * (shape.inscribed + shape.circumscribed),
+        drive_error=drive_error,
+        fast_limits=Limits._make((1.0 + drive_error) * limit for limit in robot.limits),
     )
 
 
@@ -113,24 +124,30 @@ class Choice:
 class DynamicWindow:
     """One robot's dynamic window; its arrays are made once."""
 
-    def __init__(self, robot: Robot, config: DwaConfig, period: float) -> None:
-        self.robot, self.config, self.period = robot, config, period
-        self.rules = rules_of(robot, config, period)
+    def __init__(
+        self, robot: Robot, config: DwaConfig, period: float, drive_error: float = 0.0
+    ) -> None:
+        self.robot, self.config = robot, config
+        self.rules = rules_of(robot, config, period, drive_error)
         n = (config.v_samples + 3) * (config.omega_samples + 3) + SAMPLES
         self._candidates = np.zeros(n, CANDIDATE)
         self._rows = np.zeros(len(self.rules.schedule.step), ROW)
 
-    def choose(
-        self, pose: Pose2D, twist: Twist, scene: Scene, measured: Twist | None = None
-    ) -> Choice:
+    def set_period(self, period: float) -> None:
+        """Commands are that far apart now (s)."""
+        if period != self.rules.period:
+            reach = max(period, self.config.reach)
+            self.rules = self.rules._replace(period=period, reach=reach)
+
+    def choose(self, pose: Pose2D, twist: Twist, scene: Scene, stops: Stops = ()) -> Choice:
         """The best admissible command from ``pose`` and ``twist``.
 
-        Stops are certified from the greater of ``twist`` and the ``measured`` twist, if there is one.
+        Stops are certified from each of the poses and twists ``stops``, or from these if there are none.
         """
+        stops_from = _records(stops or [(pose, twist)])
         n, best = search(
-            scene, self.rules, state_at(*pose, *twist), _stop_from(pose, twist, measured),
-            self._candidates, self._rows,
-        )  # fmt: skip
+            scene, self.rules, state_at(*pose, *twist), stops_from, self._candidates, self._rows
+        )
         candidates = self._candidates[:n].copy()
         samples = np.column_stack([candidates["v"], candidates["omega"]])
         counts = np.bincount(candidates["refused"], minlength=max(REFUSALS) + 1)
@@ -140,7 +157,7 @@ class DynamicWindow:
             command = Twist(float(found["command_v"]), float(found["command_omega"]))
             v, omega, hold = (float(found[name]) for name in ("v", "omega", "hold"))
             chosen = Manoeuvre(v, omega, hold, int(found["tail"]))
-            left = chosen._replace(hold=max(chosen.hold - self.period, 0.0))
+            left = chosen._replace(hold=max(chosen.hold - self.rules.period, 0.0))
         return Choice(
             command,
             chosen,
@@ -174,20 +191,13 @@ class DynamicWindow:
             return "acceleration"
         return REFUSALS.get(int(np.bincount(codes).argmax()), "score")
 
-    def admits(
-        self,
-        pose: Pose2D,
-        twist: Twist,
-        scene: Scene,
-        command: Twist,
-        measured: Twist | None = None,
-    ) -> bool:
-        """Whether a command from outside the search is admissible; twists as in ``choose``."""
-        stop_from = _stop_from(pose, twist, measured)
-        return bool(is_admissible(scene, self.rules, stop_from, tuple(map(float, command))))
+    def admits(self, scene: Scene, stops: Stops, command: Twist) -> bool:
+        """Whether a command from outside the search is admissible; ``stops`` as in ``choose``."""
+        asked = tuple(map(float, command))
+        return bool(is_admissible(scene, self.rules, _records(stops), asked))
 
 
-def _stop_from(pose: Pose2D, twist: Twist, measured: Twist | None) -> State:
-    """The state from which stops are certified: with the greater speeds of two twists."""
-    v, omega = (max(pair, key=abs) for pair in zip(twist, measured or twist, strict=True))
-    return state_at(*pose, v, omega)
+def _records(stops: Stops) -> npt.NDArray[np.void]:
+    """Poses and twists as STATE records."""
+    states = [state_at(*pose, *twist) for pose, twist in stops]
+    return np.array([(*state.pose, state.v, state.omega) for state in states], STATE)

@@ -3,6 +3,8 @@
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from dynastar.compiled import inner, njit
 
 
@@ -23,6 +25,15 @@ class State(NamedTuple):
     omega: float
 
 
+STATE = np.dtype([(name, np.float64) for name in (*Pose._fields, "v", "omega")])
+
+
+@inner
+def state_of(record):
+    """The state that a STATE record holds."""
+    return State(Pose(record.x, record.y, record.cos, record.sin), record.v, record.omega)
+
+
 def state_at(x: float, y: float, theta: float, v: float, omega: float) -> State:
     """The state at a position (m) and heading (rad) with speeds (m/s, rad/s)."""
     return State(Pose(x, y, math.cos(theta), math.sin(theta)), v, omega)
@@ -38,6 +49,14 @@ def slew(current, wanted, accel, brake, duration):
         return math.copysign(min(abs(wanted), accel * (duration - to_zero)), wanted)
     rate = accel if abs(wanted) > abs(current) else brake
     return current + max(-rate * duration, min(rate * duration, wanted - current))
+
+
+@inner
+def driveable(command, wanted, least):
+    """A command towards a ``wanted`` speed that a drive follows: 0, or of ``least`` magnitude."""
+    if abs(command) >= least:
+        return command
+    return math.copysign(least, wanted) if abs(wanted) >= 0.5 * least else 0.0
 
 
 @inner

@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from dynastar.dwa.clearance import Closed
 from dynastar.field import Field
 from dynastar.guidance.cost_to_go import CostToGo
 from dynastar.perception.hidden import Hidden
@@ -24,21 +25,21 @@ AT_REST = Manoeuvre(0.0, 0.0, 0.0, STOP)
 class Scene(NamedTuple):
     """The scene against which a window is evaluated.
 
-    ``distance_to_unknown`` is to what is not observed free, ``distance_to_obstacle`` to what is
-    occupied. The footprint keeps ``margin`` (m) from obstacles and ``margin_to_unknown`` from unknown
-    space, which is less where the robot stands nearer than that. ``latency`` (s) is when a command
+    ``closed`` is what is not observed free, ``distance_to_obstacle`` is to what is occupied. The
+    footprint keeps ``margin`` (m) from obstacles' cells and ``margin_to_closed`` from closed space,
+    which is less where the robot stands nearer than that. ``latency`` (s) is when a command
     given now acts, ``last`` the rest of the manoeuvre chosen last, ``v_cap`` (m/s) the speed limit,
     ``path_weight`` the least weight of keeping to the path.
     """
 
-    distance_to_unknown: Field
+    closed: Closed
     distance_to_obstacle: Field
     distance_to_path: Field
     cost_to_go: CostToGo
     moving: Prediction
     hidden: Hidden
     margin: float
-    margin_to_unknown: float
+    margin_to_closed: float
     latency: float
     last: Manoeuvre
     v_cap: float

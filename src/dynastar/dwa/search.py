@@ -15,7 +15,7 @@ from dynastar.dwa.admissible import (
     rests_in_time,
 )
 from dynastar.dwa.clearance import least_clearance
-from dynastar.dwa.motion import slew, stopping_time
+from dynastar.dwa.motion import driveable, slew, state_of, stopping_time
 from dynastar.dwa.rollout import Start, roll_out, tail_speeds, write
 from dynastar.dwa.scene import BACK, FOLLOW, TAILS, Manoeuvre
 from dynastar.dwa.terms import Terms, evaluate, most_progress, objective, passes_clear, state_value
@@ -32,10 +32,10 @@ CANDIDATE = np.dtype(
 
 
 @njit(cache=True, nogil=True)
-def search(scene, rules, state, stop_from, candidates, rows):
+def search(scene, rules, state, stops_from, candidates, rows):
     """Fill ``candidates`` and score them by Eq. 9; returns how many there are, and the best or -1.
 
-    Stops are certified from the state ``stop_from``. Where a command does not rest in time before
+    Stops are certified from the STATE records ``stops_from``. Where a command does not rest in time before
     moving obstacles by their hard bound, a manoeuvre that begins with it is admissible only if it is
     clear of them, as they are expected to go on, for as long as a stop takes: from whatever comes
     later the robot can still be at rest. ``rows`` is room for a roll-out.
@@ -48,7 +48,7 @@ def search(scene, rules, state, stop_from, candidates, rows):
     best, best_score = -1, -np.inf
     for i in range(n):
         candidate = candidates[i]
-        candidate.refused = refusal(scene, rules, stop_from, candidate)
+        candidate.refused = refusal(scene, rules, stops_from, command_of(candidate))
         candidate.score = -np.inf
         if candidate.refused == ADMISSIBLE or candidate.refused == MOVING:
             score(scene, rules, start, i, candidate, rows)
@@ -79,24 +79,33 @@ def fill_candidates(scene, rules, start, candidates):
     candidates[FOLLOW_NOW].hold = rules.schedule.period
     for i in range(n):
         candidate = candidates[i]
-        candidate.v = min(max(candidate.v, window.low_v), window.high_v)
-        candidate.command_v = slew(
-            state.v, candidate.v, limits.v_accel, limits.v_brake, rules.period
-        )
-        candidate.command_omega = slew(
-            state.omega, candidate.omega, limits.omega_accel, limits.omega_brake, rules.period
-        )
+        v, omega = min(max(candidate.v, window.low_v), window.high_v), candidate.omega
+        v, omega = driveable(v, v, limits.v_least), driveable(omega, omega, limits.omega_least)
+        candidate.v, candidate.omega = v, omega
+        next_v = slew(state.v, v, limits.v_accel, limits.v_brake, rules.period)
+        next_omega = slew(state.omega, omega, limits.omega_accel, limits.omega_brake, rules.period)
+        candidate.command_v = driveable(next_v, v, limits.v_least)
+        candidate.command_omega = driveable(next_omega, omega, limits.omega_least)
     return n
 
 
 @inner
-def refusal(scene, rules, stop_from, candidate):
-    """ADMISSIBLE, or why the candidate's command is not; MOVING where it does not rest in time."""
-    command = candidate.command_v, candidate.command_omega
-    code = certified_stop(scene, rules, stop_from, command)
-    if code != ADMISSIBLE:
-        return code
-    return rests_in_time(scene, rules, stop_from, command)
+def command_of(candidate):
+    """The command (v, omega) of a candidate."""
+    return candidate.command_v, candidate.command_omega
+
+
+@inner
+def refusal(scene, rules, stops_from, command):
+    """ADMISSIBLE, or why a command (v, omega) is not; MOVING where it does not rest in time.
+
+    The last of ``stops_from`` is the state in which the command is expected to begin to act.
+    """
+    for i in range(len(stops_from)):
+        code = certified_stop(scene, rules, state_of(stops_from[i]), command)
+        if code != ADMISSIBLE:
+            return code
+    return rests_in_time(scene, rules, state_of(stops_from[-1]), command)
 
 
 @inner
@@ -149,8 +158,6 @@ def score(scene, rules, start, i, candidate, rows):
 
 
 @njit(cache=True)
-def is_admissible(scene, rules, stop_from, command):
+def is_admissible(scene, rules, stops_from, command):
     """Whether a command (v, omega) from outside the search is admissible."""
-    if certified_stop(scene, rules, stop_from, command) != ADMISSIBLE:
-        return False
-    return rests_in_time(scene, rules, stop_from, command) == ADMISSIBLE
+    return refusal(scene, rules, stops_from, command) == ADMISSIBLE

@@ -1,10 +1,10 @@
-"""The end of a mission: whether the robot is at its goal, and how it turns to the goal's heading."""
+"""The end of a mission: whether the robot is at its goal."""
 
 import math
 
 from dynastar.geometry import Goal, Pose2D, Twist, wrap_angle
 from dynastar.navigator.config import NavigatorConfig
-from dynastar.robot import Limits, slew
+from dynastar.robot import Limits
 
 GENTLE = 0.7  # of the braking limits, used to turn to a heading or to slow down for a speed limit
 TURNING = 0.1  # rad/s from which on the robot still turns
@@ -33,14 +33,3 @@ def has_arrived(
         return True
     off = abs(wrap_angle(goal.heading - now.theta))
     return abs(twist.omega) <= TURNING and off <= config.heading_tolerance
-
-
-def turn_to(heading: float, theta: float, twist: Twist, limits: Limits, period: float) -> Twist:
-    """The command that turns on the spot to a heading (rad), slow enough to stop there."""
-    off = wrap_angle(heading - theta)
-    rate = math.sqrt(2.0 * GENTLE * limits.omega_brake * abs(off))
-    rate = math.copysign(min(limits.omega_max, rate, abs(off) / period), off)
-    return Twist(
-        slew(twist.v, 0.0, limits.v_accel, limits.v_brake, period),
-        slew(twist.omega, rate, limits.omega_accel, limits.omega_brake, period),
-    )

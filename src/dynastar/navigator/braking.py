@@ -9,7 +9,10 @@ from dynastar.geometry import Pose2D, Twist
 from dynastar.navigator.status import RobotState
 from dynastar.robot import Limits, slew, stopping_time
 
+Acting = tuple[Pose2D, Twist]
+
 REST = Twist(0.0, 0.0)
+LATENCY_STEP = 0.1  # s between the latencies for which a stop is certified, at most
 V_TOLERANCE = 0.08  # of v_max that the measured speed may be off the commanded one
 OMEGA_TOLERANCE = 0.1  # of omega_max, the same for the turning rate
 
@@ -71,14 +74,18 @@ class Commands:
         self._last = REST
         self._stop = StopProfile(REST, limits)
 
-    def when_one_acts(self, state: RobotState) -> tuple[Pose2D, Twist]:
-        """Pose and twist at the time from which a command given now acts."""
-        if self.latency <= 0.0 or not self._sent:
+    def when_one_acts(self, state: RobotState, latency: float | None = None) -> Acting:
+        """Pose and twist at the time from which a command given now acts.
+
+        That is after the declared ``latency`` (s), or another one.
+        """
+        latency = self.latency if latency is None else latency
+        if latency <= 0.0 or not self._sent:
             return state.pose, state.twist
-        ends = [stamp + self.latency for stamp, _ in self._sent[1:]] + [state.stamp + self.latency]
+        ends = [stamp + latency for stamp, _ in self._sent[1:]] + [state.stamp + latency]
         commands, durations = [], []
         for (stamp, twist), end in zip(self._sent, ends, strict=True):
-            span = end - max(stamp + self.latency, state.stamp)
+            span = end - max(stamp + latency, state.stamp)
             if span > 1e-9:
                 commands.append(twist)
                 durations.append(span)
@@ -102,6 +109,20 @@ class Commands:
         v = min(max(self._last.v, measured.v - off_v), measured.v + off_v)
         omega = min(max(self._last.omega, measured.omega - off_omega), measured.omega + off_omega)
         return Twist(v, omega)
+
+    def stops_from(self, state: RobotState, acting: Acting, twist: Twist) -> list[Acting]:
+        """The poses and twists from which a stop has to be certified, the declared latency's last.
+
+        A latency may be less than declared, and differ from tick to tick: one every LATENCY_STEP.
+        The twist is the greater of the measured one and ``twist``, that from which the command
+        goes on.
+        """
+        steps = math.ceil(self.latency / LATENCY_STEP - 1e-9)
+        states = [self.when_one_acts(state, self.latency * k / steps) for k in range(steps)]
+        return [
+            (pose, Twist(max(v, twist.v, key=abs), max(omega, twist.omega, key=abs)))
+            for pose, (v, omega) in [*states, acting]
+        ]
 
     def send(self, state: RobotState, command: Twist | None) -> Twist:
         """Notes a command that has a certified stop; None carries the last one's stop on."""

@@ -29,6 +29,9 @@ class NavigatorConfig(NamedTuple):
     range_error: Annotated[float, Field("largest error of a range reading", "m", 0.0, 1.0)] = 0.01
     pose_error: Annotated[float, Field("largest error of the position", "m", 0.0, 1.0)] = 0.01
     heading_error: Annotated[float, Field("largest error of the heading", "rad", 0.0, 0.5)] = 0.0
+    drive_error: Annotated[
+        float, Field("largest error of the drive's speeds, as a fraction", "", 0.0, 0.5)
+    ] = 0.05
     hidden_speed: Annotated[
         float,
         Field("speed of a person who steps out of unseen space; 0: nobody does", "m/s", 0.0, 20.0),

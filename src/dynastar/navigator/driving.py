@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from dynastar.dwa.clearance import kept_margin
-from dynastar.dwa.dwa import Choice, DynamicWindow
+from dynastar.dwa.dwa import Choice, DynamicWindow, Stops
 from dynastar.dwa.motion import state_at
 from dynastar.dwa.scene import AT_REST, Manoeuvre, Scene
 from dynastar.geometry import Pose2D, Twist
@@ -25,14 +25,14 @@ class Driving:
     """One robot's guidance and dynamic window, and what they keep from tick to tick.
 
     That is the rest of the last manoeuvre, and the line that was followed. ``margin`` (m) is kept from
-    unknown space.
+    closed space.
     """
 
     def __init__(
         self, robot: Robot, config: NavigatorConfig, local_map: LocalMap, margin: float
     ) -> None:
         self.robot, self.config, self.margin = robot, config, margin
-        self.window = DynamicWindow(robot, config.dwa, config.period)
+        self.window = DynamicWindow(robot, config.dwa, config.period, config.drive_error)
         self.guidance = Guidance(
             len(local_map.states),
             local_map.resolution,
@@ -63,9 +63,9 @@ class Driving:
         """Begin anew from rest: another goal, or a command from elsewhere."""
         self._last = AT_REST
 
-    def choose(self, pose: Pose2D, twist: Twist, scene: Scene, measured: Twist) -> Choice:
-        """The best manoeuvre; the next tick can carry it on."""
-        choice = self.window.choose(pose, twist, scene, measured)
+    def choose(self, pose: Pose2D, twist: Twist, scene: Scene, stops: Stops) -> Choice:
+        """The best manoeuvre, as ``DynamicWindow.choose``; the next tick can carry it on."""
+        choice = self.window.choose(pose, twist, scene, stops)
         self._last = choice.left
         return choice
 
@@ -75,18 +75,20 @@ class Driving:
         """The scene for a robot that is at ``pose`` when a command acts, and drives at ``v`` now (m/s)."""
         config, limits = self.config, self.robot.limits
         guide = self.guide = self._guided(view, target, pose)
-        stop = v**2 / (2.0 * limits.v_brake) + abs(v) * (config.latency + 2.0 * config.period)
+        stop = v**2 / (2.0 * limits.v_brake) + abs(v) * (
+            config.latency + 2.0 * self.window.rules.period
+        )
         margin = self.margin + config.heading_error * stop
-        unknown, at = view.distance_to_unknown, state_at(*pose, 0.0, 0.0).pose
+        closed, at = view.closed, state_at(*pose, 0.0, 0.0).pose
         return Scene(
-            distance_to_unknown=unknown,
+            closed=closed,
             distance_to_obstacle=view.distance_to_obstacle,
             distance_to_path=guide.distance_to_path,
             cost_to_go=guide.cost_to_go,
             moving=view.moving,
             hidden=view.hidden,
             margin=margin,
-            margin_to_unknown=kept_margin(unknown, self.window.rules.body, margin, at),
+            margin_to_closed=kept_margin(closed, self.window.rules.body, margin, at),
             latency=config.latency,
             last=self._last,
             v_cap=self._speed_cap(pose, guide, planning_map),

@@ -8,16 +8,18 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.config import choose
+from dynastar.dwa.clearance import HALF_DIAGONAL
 from dynastar.dwa.config import DwaConfig
 from dynastar.dwa.dwa import Choice
 from dynastar.errors import InputError
 from dynastar.geometry import Goal, Pose2D, Twist, as_goals
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator.aligned import as_moving, turned_disc, turned_goal, turned_pose
-from dynastar.navigator.arrival import has_arrived, is_near, turn_to
+from dynastar.navigator.arrival import has_arrived, is_near
 from dynastar.navigator.braking import Commands
 from dynastar.navigator.config import NavigatorConfig, fitted
 from dynastar.navigator.driving import Driving
+from dynastar.navigator.last_turn import NO_ROOM, LastTurn, turn_by
 from dynastar.navigator.mission import Mission
 from dynastar.navigator.planners import Planners
 from dynastar.navigator.progress import Progress
@@ -30,7 +32,6 @@ from dynastar.planning import Planner
 from dynastar.robot import ROBOTS, Robot
 from dynastar.scan import LaserScan
 
-PLAN_MARGIN = 0.03  # m beyond the footprint that a plan keeps clear
 STANDING = 0.02  # m/s up to which the robot is said to wait
 
 
@@ -68,7 +69,7 @@ class Navigator:
         planning_map = PlanningMap(grid, config.resolution, config.unknown)
         self.sensing = Sensing(robot, config, planning_map)
         self.progress, self.mission = Progress(config.stuck_time), Mission()
-        self._planner = planner
+        self._last_turn, self._planner = LastTurn(config), planner
         self._commands = Commands(robot.limits, config.period, config.latency)
         self.route = Route(self._planners_on(planning_map), config)
         self.retune(config.dwa)
@@ -90,13 +91,12 @@ class Navigator:
 
     @property
     def margin(self) -> float:
-        """The margin (m) kept from unknown space: half a cell's diagonal, and the declared errors."""
+        """The margin (m) kept from what may stand anywhere not observed free: the declared errors."""
         robot, config = self.robot, self.config
         lever = math.hypot(robot.lidar.x, robot.lidar.y)
         if not robot.footprint.is_disc:
             lever += robot.footprint.circumscribed
-        half_diagonal = self.sensing.local_map.resolution / math.sqrt(2.0)
-        return half_diagonal + 2.0 * config.pose_error + config.heading_error * lever
+        return config.range_error + 2.0 * config.pose_error + config.heading_error * lever
 
     @property
     def status(self) -> Status:
@@ -149,8 +149,8 @@ class Navigator:
         self.sensing.local_map.forget()
 
     def _planners_on(self, planning_map: PlanningMap) -> Planners:
-        shape = self.robot.footprint
-        radii = shape.circumscribed + self.margin, shape.inscribed + PLAN_MARGIN
+        shape, half_diagonal = self.robot.footprint, planning_map.grid.resolution * HALF_DIAGONAL
+        radii = shape.circumscribed + self.margin + half_diagonal, shape.inscribed + self.margin
         return Planners(planning_map, self.config, radii, self._planner)
 
     # -- missions ---------------------------------------------------------------------------------
@@ -188,6 +188,7 @@ class Navigator:
         """Forget path, manoeuvre and attempts of the last goal."""
         self.route.start_over(path)
         self.progress.reset()
+        self._last_turn.reset()
         self.driving.forget_manoeuvre()
 
     # -- the tick ---------------------------------------------------------------------------------
@@ -215,6 +216,8 @@ class Navigator:
             movers = [turned_disc(mover, -self._yaw) for mover in movers]
         if mission.regain():
             self.progress.restart(state.stamp)
+        self._commands.period = self.sensing.period
+        self.driving.window.set_period(self.sensing.period)
         changed = self.planners.mark(self.planning_map.merge(self.sensing.local_map))
         acting = self._commands.when_one_acts(state)
         if mission.under_way and self._has_arrived(state, acting):
@@ -254,22 +257,37 @@ class Navigator:
         """The command, by the dynamic window or to turn to the goal's heading; None to stop."""
         pose, measured = acting
         twist = self._commands.carried_on(measured)
+        stops = self._commands.stops_from(state, acting, twist)
         driving = self.driving
         view = self.sensing.view(state.stamp, movers, driving.times)
-        target = self.route.target(driving.lookahead)
+        target = self._last_turn.target(pose) or self.route.target(driving.lookahead)
         scene = driving.scene(pose, state.twist.v, view, target, self.planning_map)
         goal = turned_goal(self.mission.goals[0], -self._yaw)
         at_goal = self.route.path is not None and is_near(goal, pose, self.config)
         if at_goal and goal.heading is not None:
-            self.mission.say("turning", "to the goal's heading")
-            driving.forget_manoeuvre()
-            period = self.config.period
-            command = turn_to(goal.heading, pose.theta, twist, self.robot.limits, period)
-            admitted = driving.window.admits(pose, twist, scene, command, measured)
-            return command if admitted else None
-        choice = self._choice = driving.choose(pose, twist, scene, measured)
+            rules, turn = driving.window.rules, self._last_turn
+            angle = turn.angle(scene, rules, pose, goal.heading)
+            self._judge_turn(state.stamp, angle)
+            if angle is not None:
+                driving.forget_manoeuvre()
+                command = turn_by(angle, twist, self.robot.limits, self.sensing.period)
+                return command if driving.window.admits(scene, stops, command) else None
+            turn.look_for_place(scene, rules, pose, goal, state.stamp)
+            if turn.place is None:
+                return None
+        choice = self._choice = driving.choose(pose, twist, scene, stops)
         self._judge(state, choice, len(view.moving.obstacles) > 0)
         return choice.command if self.mission.under_way else None
+
+    def _judge_turn(self, now: float, angle: float | None) -> None:
+        """Say that the robot turns by an ``angle``, or has no room to; give up after a long time."""
+        reason = NO_ROOM if angle is None else "to the goal's heading"
+        self.mission.say("turning", reason)
+        left, progress = (math.tau if angle is None else abs(angle)), self._last_turn.progress
+        stuck = progress.stuck(now, (left, 0.0), lambda left, _: left)
+        if stuck and progress.rounds > self.config.attempts:
+            words = "the goal's heading cannot be reached"
+            self.mission.block(f"gave up: {words}" + (f", {NO_ROOM}" if angle is None else ""))
 
     def _judge(self, state: RobotState, choice: Choice, moving: bool) -> None:
         """Say what is going on, and start anew where there has been no progress for long."""

@@ -2,6 +2,7 @@
 
 import math
 from collections import deque
+from itertools import pairwise
 
 from dynastar.geometry import Pose2D, interpolate, wrap_angle
 from dynastar.navigator.config import NavigatorConfig
@@ -12,6 +13,8 @@ FARTHEST = 1e6  # m from the map's origin, where positions still tell cells apar
 KEPT_FOR = 2.0  # s
 FASTER = 1.2  # times the highest speed, up to which a pose has not jumped
 JUMP = 0.05  # m
+ON_TIME = 1.1  # of the declared period, up to which commands are not late
+LONGEST_PERIOD = 1.0  # s
 TURN_JUMP = 0.1  # rad
 
 
@@ -49,6 +52,14 @@ class PoseHistory:
         while state.stamp - self._states[0].stamp > KEPT_FOR:
             self._states.popleft()
         return jumped
+
+    @property
+    def period(self) -> float:
+        """The declared time between commands (s), or the longest of the last two seconds if longer."""
+        stamps = [state.stamp for state in self._states]
+        longest = max((b - a for a, b in pairwise(stamps)), default=0.0)
+        declared = self._config.period
+        return declared if longest <= ON_TIME * declared else min(longest, LONGEST_PERIOD)
 
     def pose_at(self, stamp: float) -> Pose2D:
         """The pose at a time (s), interpolated between the states that are kept."""

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.clearance import lower_bounds
+from dynastar.dwa.clearance import Closed
 from dynastar.field import Field
 from dynastar.geometry import Pose2D, compose
 from dynastar.navigator.config import NavigatorConfig
@@ -16,6 +17,7 @@ from dynastar.navigator.scan_feed import ScanFeed
 from dynastar.navigator.status import RobotState
 from dynastar.perception import LocalMap, MovingObstacle, PlanningMap, Tracker
 from dynastar.perception.hidden import Hidden, HiddenSpace
+from dynastar.perception.local_map import SEEN_OCCUPIED
 from dynastar.perception.placed_scan import placed
 from dynastar.perception.prediction import Prediction, predict
 from dynastar.robot import Robot
@@ -29,11 +31,11 @@ SEEN_NOW = 0.15  # s that a cell counts as in view after it was seen
 class View(NamedTuple):
     """What is known of the surroundings in one tick.
 
-    ``distance_to_unknown`` is to what is not observed free, ``distance_to_obstacle`` to what is
-    occupied by sensing or on the map.
+    ``closed`` is what is not observed free, ``distance_to_obstacle`` is to what is occupied by
+    sensing or on the map.
     """
 
-    distance_to_unknown: Field
+    closed: Closed
     distance_to_obstacle: Field
     hidden: Hidden
     moving: Prediction
@@ -48,6 +50,11 @@ class Sensing:
         self.tracker = Tracker(config.tracker)
         self._poses, self._feed = PoseHistory(robot.limits, config), ScanFeed(config)
         self._at_start = True  # until the first scan
+
+    @property
+    def period(self) -> float:
+        """The time (s) between commands, as ``PoseHistory.period``."""
+        return self._poses.period
 
     def set_map(self, planning_map: PlanningMap) -> None:
         """Another map; the local map is moved onto its cells."""
@@ -101,7 +108,9 @@ class Sensing:
         seen = local.free_at >= now - SEEN_NOW
         obstacles = lower_bounds((~occupied).view(np.uint8), resolution)
         return View(
-            distance_to_unknown=Field(local.field, x0, y0, resolution),
+            closed=Closed(
+                Field(local.field, x0, y0, resolution), local.states == SEEN_OCCUPIED, local.boxes
+            ),
             distance_to_obstacle=Field(obstacles, x0, y0, resolution),
             hidden=self._hidden.update((local.row0, local.column0), seen, occupied, now),
             moving=predict(self._moving(now, moving), self.config.prediction, times),

@@ -1,7 +1,7 @@
 """What the sensor saw round the robot, in a window that moves along: free, occupied or unseen."""
 
 import math
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -35,7 +35,7 @@ class LocalMap:
     """A square of cells that follows the robot, and when each was last seen how.
 
     The window lies on a lattice of cells of ``resolution`` (m), one of which has its low corner at
-    ``corner`` (x, y).
+    ``corner`` (x, y). ``boxes`` are those of the hits in the cells that are occupied.
     """
 
     def __init__(
@@ -49,6 +49,7 @@ class LocalMap:
         self.row0 = self.column0 = 0  # lattice index of cell [0, 0], even
         self.free_at = np.full((n, n), kernels.NEVER)
         self.hit_at = np.full((n, n), kernels.NEVER)
+        self.boxes = np.full((n, n), whole_cell(resolution))
         self.states = np.zeros((n, n), np.uint8)
         self.open = np.zeros((n, n), np.uint8)
         self.field = np.zeros((n, n), np.float32)
@@ -101,6 +102,7 @@ class LocalMap:
         rows, columns = np.arange(n) + up, np.arange(n) + right
         self.free_at = picked(self.free_at, rows, columns, kernels.NEVER)
         self.hit_at = picked(self.hit_at, rows, columns, kernels.NEVER)
+        self.boxes = picked(self.boxes, rows, columns, whole_cell(a))
         self.row0, self.column0 = self.row0 + up, self.column0 + right
 
     def assume_free(self, disc: Disc, now: float, mapped: npt.NDArray[np.bool_]) -> None:
@@ -121,7 +123,8 @@ class LocalMap:
         sensor, frame, now = scan.sensor, self.frame, scan.sensor.stamp
         beams, pose = (sensor.angle_min, sensor.step), (sensor.x, sensor.y, sensor.theta)
         kernels.mark_free(self.free_at, frame, scan.free, beams, pose, now)
-        kernels.mark_hits(self.hit_at, frame, scan.points, moving, now)
+        layers, times = (self.free_at, self.hit_at, self.boxes), (now, now - self.config.memory)
+        kernels.mark_hits(layers, frame, scan.points, moving, times)
 
     def erase(self, x: float, y: float, radius: float) -> None:
         """Forgets the hits in a disc: what was there has turned out to move."""
@@ -137,11 +140,17 @@ class LocalMap:
         self.field = lower_bounds(self.open, self.resolution)  # the rim is closed
 
 
+def whole_cell(resolution: float) -> npt.NDArray[Any]:
+    """The box (one record) of an obstacle anywhere in or near a cell: half a diagonal each way."""
+    half = resolution / math.sqrt(2.0)
+    return np.array((-half, half, -half, half), kernels.BOX)
+
+
 def picked(
-    stamps: npt.NDArray[np.float64], rows: Indices, columns: Indices, fill: float
-) -> npt.NDArray[np.float64]:
-    """``stamps[rows][:, columns]``, with ``fill`` where an index lies outside."""
-    result = stamps.take(rows, axis=0, mode="clip").take(columns, axis=1, mode="clip")
-    result[(rows < 0) | (rows >= stamps.shape[0])] = fill
-    result[:, (columns < 0) | (columns >= stamps.shape[1])] = fill
+    values: npt.NDArray[Any], rows: Indices, columns: Indices, fill: Any
+) -> npt.NDArray[Any]:
+    """``values[rows][:, columns]``, with ``fill`` where an index lies outside."""
+    result = values.take(rows, axis=0, mode="clip").take(columns, axis=1, mode="clip")
+    result[(rows < 0) | (rows >= values.shape[0])] = fill
+    result[:, (columns < 0) | (columns >= values.shape[1])] = fill
     return result

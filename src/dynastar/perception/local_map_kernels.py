@@ -4,9 +4,22 @@ import math
 
 import numpy as np
 
-from dynastar.compiled import inner, njit
+from dynastar.compiled import inner, njit, record
 
 NEVER = -1e18
+FREE_FOR = 1.0  # s that a cell is seen free before its earlier hits are forgotten
+
+
+class Box:
+    """The box of the hits in a cell, metres from the cell's centre."""
+
+    low_x: np.float32
+    high_x: np.float32
+    low_y: np.float32
+    high_y: np.float32
+
+
+BOX = record(Box)
 
 
 @njit(cache=True)
@@ -112,8 +125,14 @@ def mark_free(free_at, frame, gaps, beams, sensor, now):
 
 
 @njit(cache=True)
-def mark_hits(hit_at, frame, points, moving, now):
-    """Stamps ``now`` into ``hit_at`` where a point that does not move lies."""
+def mark_hits(layers, frame, points, moving, times):
+    """Stamp the time where a point that does not move lies, and put it into the box of its cell.
+
+    ``layers`` are free_at, hit_at and the boxes, ``times`` now and since when hits are remembered.
+    A box begins anew with the first hit after the cell was seen free for ``FREE_FOR``.
+    """
+    now, horizon = times
+    free_at, hit_at, boxes = layers
     resolution, x0, y0 = frame
     rows, columns = hit_at.shape
     for i in range(len(points)):
@@ -121,8 +140,16 @@ def mark_hits(hit_at, frame, points, moving, now):
             continue
         row = int(math.floor((points[i, 1] - y0) / resolution))
         column = int(math.floor((points[i, 0] - x0) / resolution))
-        if 0 <= row < rows and 0 <= column < columns:
-            hit_at[row, column] = now
+        if not (0 <= row < rows and 0 <= column < columns):
+            continue
+        x = points[i, 0] - x0 - (column + 0.5) * resolution
+        y = points[i, 1] - y0 - (row + 0.5) * resolution
+        box, hit = boxes[row, column], hit_at[row, column]
+        if hit < horizon or free_at[row, column] > hit + FREE_FOR:
+            box.low_x, box.high_x, box.low_y, box.high_y = x, x, y, y
+        box.low_x, box.high_x = min(box.low_x, x), max(box.high_x, x)
+        box.low_y, box.high_y = min(box.low_y, y), max(box.high_y, y)
+        hit_at[row, column] = now
 
 
 @njit(cache=True)
