@@ -103,6 +103,16 @@ def test_what_is_legal_is_kept(speed, count):
     assert checked(Sample, {"speed": speed, "count": count})[:2] == (speed, count)
 
 
+def test_nan_is_legal_where_the_field_says_so():
+    class Codes(NamedTuple):
+        codes: Annotated[tuple[float, ...], Field("any", nan_is_legal=True)] = ()
+        some: Annotated[tuple[float, ...], Field("none")] = ()
+
+    assert math.isnan(checked(Codes, {"codes": [0, math.nan]}).codes[1])
+    with pytest.raises(ConfigError, match=r"some\[0\]' is nan"):
+        checked(Codes, {"some": [math.nan]})
+
+
 def test_long_and_deep_values_are_cut_in_messages():
     deep: list[Any] = []
     for _ in range(50):

@@ -34,12 +34,16 @@ T = TypeVar("T")
 
 
 class Field(NamedTuple):
-    """Description of a setting: one line of doc, its unit, and its smallest and largest legal value."""
+    """Description of a setting: one line of doc, its unit, and its smallest and largest legal value.
+
+    NaN is legal only where ``nan_is_legal``.
+    """
 
     doc: str
     unit: str = ""
     low: float = -math.inf
     high: float = math.inf
+    nan_is_legal: bool = False
 
 
 _ANY = Field("")  # a value of any size
@@ -186,7 +190,7 @@ def _cast_number(hint: Any, value: Any, where: str, field: Field) -> float:
     legal = f"from {field.low:g} to {field.high:g}{unit}"
     if not _is_number(value):
         raise ConfigError(f"'{where}' is {shown(value)}: expected a number {legal}")
-    if not field.low <= value <= field.high:  # NaN is in no range
+    if not (field.low <= value <= field.high or (field.nan_is_legal and math.isnan(value))):
         raise ConfigError(
             f"'{where}' is {shown(value)}{unit}: legal is {legal}{_as_radians(value, field)}"
         )

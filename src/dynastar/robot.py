@@ -35,7 +35,10 @@ class Limits(NamedTuple):
 
 @self_checking
 class Lidar(NamedTuple):
-    """A planar lidar as mounted on the robot."""
+    """A planar lidar as mounted on the robot.
+
+    ``nothing`` are the values that the driver writes for "no return", besides +inf and range_max.
+    """
 
     beams: Annotated[int, Field("readings in a scan", "", 1, 20000)] = 360
     fov: Annotated[float, Field("angle from the first beam to the last", "rad", 0.01, math.tau)] = (
@@ -48,6 +51,10 @@ class Lidar(NamedTuple):
     theta: Annotated[float, Field("mount, direction of the middle", "rad", -math.tau, math.tau)] = (
         0.0
     )
+    nothing: Annotated[
+        tuple[float, ...],
+        Field("readings that mean no return, as 0, nan or 65.5", "m", nan_is_legal=True),
+    ] = ()
 
     @property
     def increment(self) -> float:
@@ -126,6 +133,14 @@ class Footprint:
             centre = 0.5 * (piece.min(axis=0) + piece.max(axis=0))
             discs.append((*centre, np.hypot(*(piece - centre).T).max()))
         return np.array(discs)
+
+    def covers(self, points: npt.NDArray[np.float64], margin: float) -> npt.NDArray[np.bool_]:
+        """Whether points (n, 2) lie within the footprint, each side moved out by ``margin`` (m)."""
+        inside = np.hypot(points[:, 0], points[:, 1]) <= self.circumscribed + margin
+        for corner, after in zip(self.vertices, np.roll(self.vertices, -1, axis=0), strict=True):
+            (dx, dy), (x, y) = after - corner, (points - corner).T
+            inside &= dx * y - dy * x >= -margin * math.hypot(dx, dy)
+        return np.asarray(inside)
 
     @property
     def is_disc(self) -> bool:

@@ -2,14 +2,19 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.config import shown
 from dynastar.errors import InputError
 from dynastar.geometry import Pose2D
 
 LEAST_INCREMENT = 1e-5  # rad
+RANGES_UP_TO = 1.001  # times range_max, up to which a reading counts as range_max
+ROUNDED_DOWN = 1.0 - 1e-7  # times a limit, which a reading of it may be as a float32
+FARTHEST = 1e3  # m from the robot's centre to a mount, and rad of an angle
 NUMBERS = "stamp", "angle_min", "angle_increment", "range_min", "range_max"
 
 
@@ -18,8 +23,9 @@ class LaserScan:
     """One turn of a planar lidar, as sensor_msgs/LaserScan has it, with the pose of its mount.
 
     ``ranges`` (n,) metres: beam i points at ``angle_min + i * angle_increment`` in the sensor's
-    frame. +inf is "nothing up to range_max"; NaN, -inf, 0 and readings below range_min say nothing.
-    ``mount`` is the sensor's pose on the robot; ``stamp`` the time in seconds of the whole scan.
+    frame. ``readings`` says what they mean. ``range_max`` may be +inf: then the robot's ``Lidar`` says
+    how far a beam without a return is free. ``mount`` is the sensor's pose on the robot; ``stamp`` the
+    time in seconds of the whole scan.
     Raises InputError for what is not a number.
     """
 
@@ -38,7 +44,7 @@ class LaserScan:
                 object.__setattr__(self, name, float(getattr(self, name)))
             object.__setattr__(self, "mount", Pose2D(*map(float, self.mount)))
         except (TypeError, ValueError, OverflowError) as error:
-            raise InputError(f"a scan of {self.ranges!r:.40}: {error}; expected numbers") from None
+            raise InputError(f"a scan of {shown(self.ranges)}: {error}; expected numbers") from None
         ranges.flags.writeable = False
         object.__setattr__(self, "ranges", ranges)
 
@@ -54,6 +60,20 @@ class LaserScan:
         step = abs(self.angle_increment)
         return bool(step * len(self.ranges) > math.tau - 0.5 * step)
 
+    def readings(self) -> npt.NDArray[np.float64]:
+        """What each beam found (n,): the range (m) of a hit, +inf for no hit, NaN for no information.
+
+        A beam that reads range_max or +inf hit nothing up to range_max. NaN, -inf, 0 and readings below
+        range_min or beyond range_max have no information.
+        """
+        ranges = self.ranges.astype(np.float64)
+        low, high = ROUNDED_DOWN * self.range_min, ROUNDED_DOWN * self.range_max
+        beyond = (ranges > RANGES_UP_TO * self.range_max) & (ranges < np.inf)
+        is_free = (ranges >= high) & ~beyond
+        ranges[~((ranges > 0.0) & (ranges >= low) & (ranges < high))] = np.nan
+        ranges[is_free] = np.inf
+        return ranges
+
     def fault(self) -> str | None:
         """Describe why this scan is unusable, or None. Its number of beams may differ each time."""
         n = len(self.ranges)
@@ -62,10 +82,28 @@ class LaserScan:
         numbers = (self.stamp, self.angle_min, self.angle_increment, *self.mount)
         if not all(map(math.isfinite, numbers)):
             return "the scan's stamp, angles or mount are not finite"
+        if max(map(abs, (self.angle_min, *self.mount))) > FARTHEST:
+            x, y, theta = self.mount
+            return (
+                f"the scan begins at {self.angle_min:g} rad from a mount at ({x:g}, {y:g}, {theta:g}): "
+                f"expected within 1000 m and rad"
+            )
         if self.angle_increment == 0.0 or abs(self.angle_increment) * (n - 1) > math.tau + 1e-3:
             return f"the scan's {n} beams at {self.angle_increment:g} rad do not fit in a circle"
         if abs(self.angle_increment) < LEAST_INCREMENT:
             return f"the scan's increment is {self.angle_increment:g} rad: expected 1e-5 or more"
-        if not (0.0 <= self.range_min < self.range_max < math.inf):
+        if not (0.0 <= self.range_min < self.range_max):
             return f"the scan's ranges run from {self.range_min:g} to {self.range_max:g} m"
         return None
+
+
+def as_scans(value: Any) -> list[Any]:
+    """The scans of one, of a sequence of scans or of None; what is not a scan is one that has a fault."""
+    if value is None:
+        return []
+    if isinstance(value, LaserScan | str | bytes):
+        return [value]
+    try:
+        return list(value)
+    except TypeError:
+        return [value]

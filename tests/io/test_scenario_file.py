@@ -10,7 +10,7 @@ import pytest
 from dynastar.errors import InputError, ScenarioError
 from dynastar.geometry import Goal
 from dynastar.grid import OccupancyGrid
-from dynastar.io import load_scenario, save_map
+from dynastar.io import load_scenario, save_map, save_scenario
 from dynastar.io.scenario_file import read_scenario
 from dynastar.io.scenario_things import contains, read_mover, read_obstacle
 from dynastar.robot import ROBOTS
@@ -93,6 +93,13 @@ def test_a_small_scenario_has_the_defaults(tmp_path):
     assert (scenario.world, scenario.obstacles, scenario.movers) == (None, (), ())
     assert (scenario.time_limit, scenario.seed, scenario.preset) == (300.0, 0, "default")
     assert scenario.source == tomllib.loads(SMALL)
+
+
+def test_the_readings_that_mean_no_return_are_read_and_written_back(tmp_path):
+    scenario = load(tmp_path, SMALL + "\n[sensor]\nnothing = [0, nan, 65.5]\n")
+    again = load_scenario(save_scenario(scenario, tmp_path / "again"))
+    for nothing in (scenario.robot.lidar.nothing, again.robot.lidar.nothing):
+        assert nothing == pytest.approx((0.0, math.nan, 65.5), nan_ok=True)
 
 
 def test_a_whole_scenario_is_read_key_by_key(tmp_path):

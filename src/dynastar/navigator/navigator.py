@@ -12,7 +12,7 @@ from dynastar.dwa.clearance import HALF_DIAGONAL
 from dynastar.dwa.config import DwaConfig
 from dynastar.dwa.dwa import Choice
 from dynastar.errors import InputError
-from dynastar.geometry import Goal, Pose2D, Twist, as_goals
+from dynastar.geometry import Goal, Pose2D, Twist, as_goal, as_goals
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator.aligned import as_moving, turned_disc, turned_goal, turned_pose
 from dynastar.navigator.arrival import has_arrived, is_near
@@ -22,16 +22,19 @@ from dynastar.navigator.driving import Driving
 from dynastar.navigator.last_turn import NO_ROOM, LastTurn, turn_by
 from dynastar.navigator.mission import Mission
 from dynastar.navigator.planners import Planners
+from dynastar.navigator.pose_history import FARTHEST
 from dynastar.navigator.progress import Progress
 from dynastar.navigator.replanning import Route
 from dynastar.navigator.sensing import Sensing
-from dynastar.navigator.status import RobotState, Status, as_floats, within_limits
+from dynastar.navigator.status import RobotState, Status, as_floats, slowed, within_limits
 from dynastar.path import Path
 from dynastar.perception import MovingObstacle, PlanningMap
 from dynastar.planning import Planner
 from dynastar.robot import ROBOTS, Robot
-from dynastar.scan import LaserScan
+from dynastar.scan import LaserScan, as_scans
 
+LONGEST_PATH = 1e5  # m of a path to follow
+TRIAL = Twist(0.1, 0.3)  # speeds up to which the robot tries whether a lidar is really frozen
 STANDING = 0.02  # m/s up to which the robot is said to wait
 
 
@@ -102,9 +105,10 @@ class Navigator:
     def status(self) -> Status:
         """State of the navigator and its reason: a copy, as of the last command."""
         mission, route, choice = self.mission, self.route, self._choice
+        is_driven = mission.state not in ("idle", "arrived", "sensor_lost")
         return Status(
             state=mission.state,
-            reason=mission.reason,
+            reason="; ".join([mission.reason, *(self.sensing.hints if is_driven else [])]),
             replans=route.replans,
             recoveries=mission.recoveries,
             plan=route.plan,
@@ -168,13 +172,19 @@ class Navigator:
 
         Nothing is planned. Obstacles on the path are passed within the local map, and waited for
         where that cannot be done. Loops that are shorter than what the robot drives within
-        ``dwa.horizon`` are cut. Raises InputError for a path without points or not finite.
+        ``dwa.horizon`` are cut. Raises InputError for a path without points, one that is not finite,
+        leads farther than 1e6 m from the map's origin or is longer than 1e5 m, and for a heading that
+        a goal cannot have.
         """
-        path = path if isinstance(path, Path) else Path(np.asarray(path, dtype=np.float64))
-        if heading is not None and not math.isfinite(heading):
-            raise InputError(f"the heading at the end is {heading}: expected radians or None")
-        x, y = map(float, path.points[-1])
-        self._set_out([Goal(x, y, heading)], "new path", path)
+        path = path if isinstance(path, Path) else Path(path)  # type: ignore[arg-type]
+        far = float(np.abs(path.points).max())
+        if far > FARTHEST or path.length > LONGEST_PATH:
+            raise InputError(
+                f"a path is {path.length:g} m long and leads {far:g} m from the map's origin: expected "
+                f"at most {LONGEST_PATH:g} m, within {FARTHEST:g} m"
+            )
+        end = (*path.points[-1].tolist(), heading)
+        self._set_out([as_goal(end)], "new path", path)
 
     def cancel(self) -> None:
         """Drop goals and path; the robot comes to rest by its certified stop and is idle."""
@@ -203,8 +213,7 @@ class Navigator:
         self._choice = None
         state, mission = within_limits(as_floats(state), self.robot.limits), self.mission
         state = state._replace(pose=turned_pose(state.pose, -self._yaw))
-        scans = [] if scan is None else [scan] if isinstance(scan, LaserScan) else list(scan)
-        fault = self.sensing.update(state, scans)
+        fault = self.sensing.update(state, as_scans(scan))
         try:
             movers = as_moving(movers)
         except ValueError as error:
@@ -227,7 +236,10 @@ class Navigator:
             self._update_route(state, changed)
         if not mission.under_way:
             return self._commands.brake(state)
-        return self._commands.send(state, self._decide(state, acting, movers))
+        command = self._decide(state, acting, movers)
+        if command is not None and self.sensing.is_frozen and abs(state.twist.v) < 2.0 * TRIAL.v:
+            command = slowed(command, TRIAL)  # a faster robot brakes when its data are too old
+        return self._commands.send(state, command)
 
     def _has_arrived(self, state: RobotState, acting: tuple[Pose2D, Twist]) -> bool:
         goal, config = turned_goal(self.mission.goals[0], -self._yaw), self.config

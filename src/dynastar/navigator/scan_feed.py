@@ -1,56 +1,107 @@
 """Scans as they come in: which of them are new, and why others cannot be used."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
-from dynastar.geometry import Pose2D
+from dynastar.config import shown
+from dynastar.geometry import Pose2D, Twist, compose
 from dynastar.navigator.config import NavigatorConfig
+from dynastar.navigator.readings import Readings
+from dynastar.navigator.repeats import contradicted
+from dynastar.navigator.status import RobotState
+from dynastar.robot import Robot
 from dynastar.scan import LaserScan
 
-RANGES_UP_TO = 1.001  # times range_max
-SAME_PLACE = 0.05  # m within which a robot may get the same ranges again
+ENOUGH = 0.02  # of the beams contradict a scan that repeats
+AT_REST = 0.01  # m/s and rad/s up to which the robot is at rest
+FIRST_WAIT = 2.0  # s at rest before a lidar that seems frozen is tried again; doubles each time
+LONGEST_WAIT = 60.0  # s
+NO_VALID_RANGE = (
+    "the scan has no valid range: its readings are NaN, beyond range_max or within the robot's own "
+    "footprint (if the driver writes them for no return, add them to lidar.nothing)"
+)
+REPEATED = "the scan repeats the last one, though the robot has moved"
+
+PoseAt = Callable[[float], Pose2D]
+
+
+class Source:
+    """What is kept of one lidar."""
+
+    def __init__(self, robot: Robot, config: NavigatorConfig) -> None:
+        self.readings = Readings(robot, config)
+        self.stamp = -math.inf  # of the newest scan that was accepted
+        self.last: LaserScan | None = None  # the first scan with the newest readings,
+        self.pose = Pose2D(0.0, 0.0, 0.0)  # and the sensor's pose then, in the map frame
+        self.tries = 0  # to drive on though the lidar seems frozen
+        self.is_tried = self.is_frozen = False
+
+    def keep(self, scan: LaserScan, pose: Pose2D) -> None:
+        """Note a scan whose readings are new."""
+        self.last, self.pose, self.tries, self.is_tried = scan, pose, 0, False
+
+    def try_again(self, rest: float) -> bool:
+        """Whether to drive on though the lidar seems frozen, after the robot has rested ``rest`` s."""
+        wait = min(FIRST_WAIT * 2.0 ** min(self.tries, 10), LONGEST_WAIT)
+        tried, self.is_tried = self.is_tried, rest >= wait
+        self.tries += tried and not self.is_tried
+        return self.is_tried
 
 
 class ScanFeed:
     """Checks the scans of all lidars; a lidar is told by its mount."""
 
-    def __init__(self, config: NavigatorConfig) -> None:
-        self._config = config
-        self._stamps: dict[Pose2D, float] = {}  # of the newest scan of each lidar
-        self._ranges: dict[Pose2D, tuple[npt.NDArray[np.floating], Pose2D]] = {}
+    def __init__(self, robot: Robot, config: NavigatorConfig) -> None:
+        self._robot, self._config = robot, config
+        self._sources: dict[Pose2D, Source] = {}
+        self._moved_at = -math.inf  # stamp (s) of the last state in which the robot moved
 
     @property
     def newest(self) -> float:
         """Stamp (s) of the newest scan that was accepted, -inf if there is none."""
-        return max(self._stamps.values(), default=-math.inf)
+        return max((source.stamp for source in self._sources.values()), default=-math.inf)
+
+    @property
+    def is_frozen(self) -> bool:
+        """Whether some lidar repeats readings that the robot's motion contradicts."""
+        return any(source.is_frozen for source in self._sources.values())
+
+    @property
+    def hints(self) -> list[str]:
+        """What has been odd about the scans for some seconds, though the robot drives."""
+        found = [hint for source in self._sources.values() for hint in source.readings.hints]
+        return list(dict.fromkeys(found + [REPEATED] * self.is_frozen))
+
+    def forget_poses(self) -> None:
+        """The robot's pose has jumped: it does not tell what readings should have changed."""
+        for source in self._sources.values():
+            source.last = None
 
     def accept(
-        self, scans: Sequence[LaserScan], now: float, here: Pose2D
+        self, scans: Sequence[LaserScan], state: RobotState, pose_at: PoseAt
     ) -> tuple[list[LaserScan], str | None]:
-        """The scans that are new and can be used by a robot at ``here``, and a fault, or None.
+        """The scans that are new and can be used, interpreted, and a fault, or None.
 
-        There is no fault as long as some scan is no older than ``scan_age``.
+        ``pose_at`` gives the robot's pose at a stamp. There is no fault as long as some scan is no older
+        than ``scan_age``.
         """
-        accepted, fault, ahead = [], None, 0.0
-        for scan in scans:
-            if not isinstance(scan, LaserScan):
-                fault = f"a scan is {scan!r:.40}: expected a LaserScan"
+        accepted, fault, ahead, now = [], None, 0.0, state.stamp
+        if not is_at_rest(state.twist):
+            self._moved_at = now
+        for given in scans:
+            if not isinstance(given, LaserScan):
+                fault = f"a scan is {shown(given)}: expected a LaserScan"
                 continue
-            wrong = scan.fault()
-            if wrong is None and scan.stamp > now + 0.5 * self._config.period:
-                wrong = f"the scan is {scan.stamp - now:.3f} s ahead of the robot's state"
-                ahead = max(ahead, scan.stamp - now)
-            is_new = scan.stamp > self._stamps.get(scan.mount, -math.inf)
-            if wrong is None and is_new:
-                wrong = self._without_news(scan, here)
-            if wrong is not None:
-                fault = wrong
-            elif is_new:
-                self._stamps[scan.mount] = scan.stamp
-                accepted.append(scan)
+            wrong = given.fault()
+            if wrong is None and given.stamp > now + 0.5 * self._config.period:
+                wrong = f"the scan is {given.stamp - now:.3f} s ahead of the robot's state"
+                ahead = max(ahead, given.stamp - now)
+            if wrong is None:
+                scan, wrong = self._news(given, now, pose_at)
+                accepted += [scan] if scan is not None else []
+            fault = wrong or fault
         age = now - self.newest
         if age > self._config.scan_age:
             return accepted, fault or "no scan" + (
@@ -60,17 +111,36 @@ class ScanFeed:
             return accepted, f"the robot's state is {ahead:.1f} s older than the scan"
         return accepted, None
 
-    def _without_news(self, scan: LaserScan, here: Pose2D) -> str | None:
-        """Describe why a scan has no information: no valid range, or the last one while moving."""
-        ranges = scan.ranges
-        beyond = (ranges > RANGES_UP_TO * scan.range_max) & (ranges != np.inf)
-        if (np.isnan(ranges) | beyond).all():
-            return "the scan has no valid range"
-        last, there = self._ranges.get(scan.mount, (None, here))
-        if last is None or not np.array_equal(ranges, last, equal_nan=True):
-            self._ranges[scan.mount] = ranges, here
-            return None
-        moved = math.hypot(here.x - there.x, here.y - there.y) > SAME_PLACE
-        if moved and np.isfinite(ranges).any():
-            return "the scan repeats the last one, though the robot has moved"
-        return None
+    def _news(
+        self, given: LaserScan, now: float, pose_at: PoseAt
+    ) -> tuple[LaserScan | None, str | None]:
+        """The scan as it can be used, None if it has no information that is new, and why it is wrong."""
+        source = self._sources.get(given.mount) or Source(self._robot, self._config)
+        if given.stamp <= source.stamp:
+            return None, None
+        scan = source.readings.interpreted(given)
+        if np.isnan(scan.ranges).all() and not (given.ranges <= given.range_min).any():
+            return None, NO_VALID_RANGE
+        self._sources[given.mount] = source
+        pose = compose(pose_at(scan.stamp), scan.mount)
+        source.is_frozen = self._is_frozen(source, scan, pose)
+        if source.is_frozen and not source.try_again(now - self._moved_at):
+            return None, REPEATED
+        source.stamp = scan.stamp
+        return (None if source.is_frozen else scan), None
+
+    def _is_frozen(self, source: Source, scan: LaserScan, pose: Pose2D) -> bool:
+        """Whether a lidar repeats readings that the motion since it first gave them contradicts."""
+        last = source.last
+        if last is None or not np.array_equal(scan.ranges, last.ranges, equal_nan=True):
+            source.keep(scan, pose)
+        elif self._moved_at <= last.stamp:  # at rest since: the pose may have been corrected
+            source.pose = pose
+        else:
+            return contradicted(scan, source.pose, pose, self._config) >= ENOUGH
+        return False
+
+
+def is_at_rest(twist: Twist) -> bool:
+    """Whether a twist is that of a robot at rest."""
+    return max(abs(twist.v), abs(twist.omega)) <= AT_REST

@@ -25,6 +25,7 @@ from dynastar.scan import LaserScan
 
 Mask = npt.NDArray[np.bool_]
 
+LARGEST = MovingObstacle(1e6, 1e6, 1e3, 1e3, 1e3)  # m and m/s, of one that a caller gives
 SEEN_NOW = 0.15  # s that a cell counts as in view after it was seen
 
 
@@ -48,7 +49,7 @@ class Sensing:
         self.robot, self.config, self.planning_map = robot, config, planning_map
         self._keep(LocalMap(config.local_map, *planning_map.lattice))
         self.tracker = Tracker(config.tracker)
-        self._poses, self._feed = PoseHistory(robot.limits, config), ScanFeed(config)
+        self._poses, self._feed = PoseHistory(robot.limits, config), ScanFeed(robot, config)
         self._at_start = True  # until the first scan
 
     @property
@@ -68,6 +69,16 @@ class Sensing:
         self._hidden = HiddenSpace(n, local_map.resolution, speed, local_map.corner)
         self.local_map = local_map
 
+    @property
+    def hints(self) -> list[str]:
+        """What has been odd about the scans for some seconds, though the robot drives."""
+        return self._feed.hints
+
+    @property
+    def is_frozen(self) -> bool:
+        """Whether some lidar repeats readings that the robot's motion contradicts."""
+        return self._feed.is_frozen
+
     def update(self, state: RobotState, scans: Sequence[LaserScan]) -> str | None:
         """Update local map and tracks. Returns why the data cannot be trusted, or None."""
         fault = self._poses.fault(state)
@@ -78,8 +89,9 @@ class Sensing:
         if jumped:
             self.local_map.forget()
             self.tracker.forget()
+            self._feed.forget_poses()
         self.local_map.follow(x, y)
-        accepted, fault = self._feed.accept(scans, now, state.pose)
+        accepted, fault = self._feed.accept(scans, state, self._poses.pose_at)
         for scan in accepted:
             self._add(scan)
         if not self._at_start:
@@ -119,7 +131,7 @@ class Sensing:
     def _moving(self, now: float, moving: Sequence[MovingObstacle] | None) -> list[MovingObstacle]:
         """Moving obstacles as of ``now``: those given, or those tracked."""
         if moving is not None:
-            return [MovingObstacle(*one) for one in moving if all(map(math.isfinite, one))]
+            return [one for one in moving if _is_usable(one)]
         dt = now - self._feed.newest
         return [
             MovingObstacle(t.x + t.vx * dt, t.y + t.vy * dt, t.vx, t.vy, t.radius)
@@ -143,3 +155,9 @@ class Sensing:
         for disc in left:
             self.local_map.erase(*disc)
         self.local_map.see(view, moving)
+
+
+def _is_usable(one: MovingObstacle) -> bool:
+    """Whether a moving obstacle that was given has finite numbers, none of them absurd."""
+    within = (abs(value) <= most for value, most in zip(one, LARGEST, strict=True))
+    return all(within) and one.radius >= 0.0

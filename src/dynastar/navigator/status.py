@@ -4,6 +4,8 @@ import math
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, get_args
 
+import numpy as np
+
 from dynastar.dwa.dwa import Choice
 from dynastar.errors import PlanningError
 from dynastar.geometry import Pose2D, Twist
@@ -37,9 +39,9 @@ def as_floats(state: RobotState) -> RobotState:
     """
     try:
         stamp, (x, y, theta), (v, omega) = state
-        return RobotState(
-            float(stamp), Pose2D(float(x), float(y), float(theta)), Twist(float(v), float(omega))
-        )
+        numbers = np.array((stamp, x, y, theta, v, omega), dtype=np.float64)
+        stamp, x, y, theta, v, omega = numbers.tolist()
+        return RobotState(stamp, Pose2D(x, y, theta), Twist(v, omega))
     except (TypeError, ValueError, OverflowError):
         return NO_STATE
 
@@ -52,6 +54,13 @@ def within_limits(state: RobotState, limits: Limits) -> RobotState:
     v = min(max(v, limits.v_min), limits.v_max)
     omega = min(max(omega, -limits.omega_max), limits.omega_max)
     return state._replace(twist=Twist(v, omega))
+
+
+def slowed(command: Twist, most: Twist) -> Twist:
+    """A command along the same arc, at no more than the speeds ``most`` either way."""
+    v, omega = command
+    factor = min(1.0, most.v / max(abs(v), 1e-9), most.omega / max(abs(omega), 1e-9))
+    return Twist(factor * v, factor * omega)
 
 
 @dataclass(frozen=True)

@@ -23,25 +23,20 @@ BOX = record(Box)
 
 
 @njit(cache=True)
-def free_ranges(ranges, limits, increment, full_circle, errors, narrowest):
+def free_ranges(readings, range_max, increment, full_circle, errors, narrowest):
     """Range (m) up to which space is observed free between beam i and beam i + 1, (n,).
 
     As far as the shorter of the two, less the error of a range and half the gap (a corner may stand
     out that far between two beams), while the gap is narrower than the narrowest obstacle. A
-    heading error takes the minimum over the neighbours that it could swap in. ``limits`` are range_min
-    and range_max, ``errors`` those of a range (m) and of the heading (rad).
+    heading error takes the minimum over the neighbours that it could swap in. ``readings`` are those of
+    ``LaserScan.readings``, ``errors`` those of a range (m) and of the heading (rad).
     """
-    (range_min, range_max), (range_error, heading_error) = limits, errors
-    n = len(ranges)
+    range_error, heading_error = errors
+    n = len(readings)
     reach = np.empty(n)
     for i in range(n):
-        r = float(ranges[i])
-        if r == np.inf:
-            reach[i] = range_max
-        elif r > 0.0 and range_min <= r <= range_max * 1.001:
-            reach[i] = min(r, range_max)
-        else:  # NaN, -inf, 0, blind or out of range: says nothing
-            reach[i] = 0.0
+        r = float(readings[i])
+        reach[i] = 0.0 if math.isnan(r) else min(r, range_max)
     step = abs(increment)
     widest = narrowest / step if step > 0.0 else range_max
     gaps = np.zeros(n)
@@ -213,19 +208,19 @@ def compose_states(free_at, hit_at, barred, horizon, states, open_):
 
 
 @njit(cache=True)
-def scan_points(ranges, limits, beams, sensor):
+def scan_points(readings, beams, sensor):
     """Where the beams ended: points (k, 2) in the map frame and the beam each came from (k,).
 
-    ``limits`` are range_min and range_max, ``beams`` their first angle and increment.
+    ``readings`` are those of ``LaserScan.readings``, ``beams`` their first angle and increment.
     """
-    (range_min, range_max), (angle_min, increment), (x, y, theta) = limits, beams, sensor
-    n = len(ranges)
+    (angle_min, increment), (x, y, theta) = beams, sensor
+    n = len(readings)
     points = np.empty((n, 2))
     hit_by = np.empty(n, np.int64)
     k = 0
     for i in range(n):
-        r = float(ranges[i])
-        if r > 0.0 and range_min <= r < range_max:
+        r = float(readings[i])
+        if math.isfinite(r):
             angle = theta + angle_min + increment * i
             points[k, 0] = x + r * math.cos(angle)
             points[k, 1] = y + r * math.sin(angle)

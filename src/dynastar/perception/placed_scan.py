@@ -49,7 +49,7 @@ def placed(
     """
     x, y, theta = map(float, pose)
     first, step = float(scan.angle_min), float(scan.angle_increment)
-    limits, full = (scan.range_min, scan.range_max), scan.full_circle
-    sensor = Sensor(float(scan.stamp), x, y, theta, first, step, len(scan.ranges), full)
-    free = free_ranges(scan.ranges, limits, step, full, errors, narrowest)
-    return PlacedScan(sensor, free, *scan_points(scan.ranges, limits, (first, step), (x, y, theta)))
+    readings, full = scan.readings(), scan.full_circle
+    sensor = Sensor(float(scan.stamp), x, y, theta, first, step, len(readings), full)
+    free = free_ranges(readings, scan.range_max, step, full, errors, narrowest)
+    return PlacedScan(sensor, free, *scan_points(readings, (first, step), (x, y, theta)))

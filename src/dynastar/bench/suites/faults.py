@@ -65,7 +65,7 @@ ONE_TICK = "one tick of bad data leaves the data of the tick before: going on is
 CASES = (
     Case("scans_lost", {}, True, NO_DATA),
     Case("scans_frozen", {}, True, NO_DATA),
-    Case("scans_repeated", {}, True, "a moving robot never gets the same ranges twice"),
+    Case("scans_repeated", {}, True, "walls in view would have changed the ranges"),
     Case("scans_nan", {}, True, NO_DATA),
     Case("beams_missing", {"size": 0.5}, False, "the beams between still cover the way"),
     Case("side_missing", {"size": 0.5}, False, "the other side is seen: slow down as needed"),
