@@ -28,6 +28,12 @@ def test_arc_starts_at_zero_never_falls_and_ends_at_the_length(points):
     assert path.length >= np.hypot(*(path.points[-1] - path.points[0])) - 1e-9
 
 
+@pytest.mark.parametrize("points", ["ab", [("a", "b")], None, [(0, 0), (1,)], [(10**400, 0)], 3.0])
+def test_what_is_not_a_list_of_points_is_refused(points):
+    with pytest.raises(InputError, match="a path"):
+        Path(points)
+
+
 def test_length_and_at():
     path = Path([(0, 0), (3, 0), (3, 4)])
     assert path.length == pytest.approx(7.0)

@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from numbers import Real
 from typing import Any, NamedTuple
 
+from dynastar.config import shown
 from dynastar.errors import InputError
 
 
@@ -35,7 +36,7 @@ def as_point(value: Any, what: str) -> tuple[float, float]:
     """(x, y) in metres of a point, a pose or a goal; InputError, which calls it ``what``, for another."""
     numbers = _numbers(value)
     if numbers is None or not 2 <= len(numbers) <= 3:
-        raise InputError(f"{what} is {value!r:.80}: expected (x, y), two numbers in metres")
+        raise InputError(f"{what} is {shown(value)}: expected (x, y), two numbers in metres")
     return numbers[0], numbers[1]
 
 
@@ -44,7 +45,7 @@ def as_goal(value: Any) -> Goal:
     numbers = _numbers(value)
     if numbers is None or not 2 <= len(numbers) <= 3:
         raise InputError(
-            f"a goal is {value!r:.80}: expected (x, y) in metres, or (x, y, heading) in radians"
+            f"a goal is {shown(value)}: expected (x, y) in metres, or (x, y, heading) in radians"
         )
     x, y = numbers[:2]
     heading = numbers[2] if len(numbers) == 3 else None
@@ -74,7 +75,10 @@ def _numbers(value: Any) -> list[float] | None:
         found.pop()
     if not all(isinstance(v, Real) and not isinstance(v, bool) for v in found):
         return None
-    return [float(v) for v in found]
+    try:
+        return [float(v) for v in found]
+    except OverflowError:  # an int beyond all floats
+        return None
 
 
 def wrap_angle(angle: float) -> float:

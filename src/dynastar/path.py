@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.config import shown
 from dynastar.errors import InputError
 
 Floats = npt.NDArray[np.float64]
@@ -46,7 +47,12 @@ class Path:
     arc: Floats = field(init=False)
 
     def __post_init__(self) -> None:
-        points = np.array(self.points, dtype=np.float64)
+        try:
+            points = np.array(self.points, dtype=np.float64)
+        except (TypeError, ValueError, OverflowError):
+            raise InputError(
+                f"a path is {shown(self.points)}: expected points (x, y), numbers in metres"
+            ) from None
         if points.ndim != 2 or points.shape[1] != 2 or len(points) == 0:
             raise InputError(f"a path has shape {points.shape}: expected (n >= 1, 2), in metres")
         if not np.isfinite(points).all():

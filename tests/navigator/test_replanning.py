@@ -73,11 +73,19 @@ def test_a_box_on_a_given_path_is_gone_round():
 @pytest.mark.parametrize(
     ("path", "words"),
     [([1.0, 2.0, 3.0], "shape"), (np.zeros((4, 3)), "shape"), (np.zeros((0, 2)), "shape"),
-     ([(0.0, math.nan)], "finite")],
+     ([(0.0, math.nan)], "finite"), ("ab", "expected points"), ([(0, 0), (1,)], "expected points"),
+     ([(0, 0), (1e7, 0)], "within 1e[+]06 m"), ([(9e5, 0), (9e5, 1)] * 99_999, "at most 100000 m"),
+     ([(0, 0), (1e300, 0)], "within")],
 )  # fmt: skip
 def test_a_path_that_is_none_is_refused(path, words):
     with pytest.raises(InputError, match=words):
         Drive(room()).navigator.follow(path)
+
+
+@pytest.mark.parametrize("heading", ["north", math.nan, math.inf, 90.0, 10**400])
+def test_a_path_with_a_heading_that_is_none_is_refused(heading):
+    with pytest.raises(InputError, match=r"heading|a goal is"):
+        Drive(room()).navigator.follow([(1.0, 2.0), (3.0, 2.0)], heading)
 
 
 def test_a_mission_is_cancelled_by_a_stop_within_the_limits():

@@ -36,9 +36,9 @@ class PoseHistory:
             return (
                 "the robot's state is not finite: expected a stamp, a pose and a twist of numbers"
             )
-        x, y, _ = state.pose
-        if max(abs(x), abs(y)) > FARTHEST:
-            return f"the robot's pose is ({x:g}, {y:g}): expected within 1e6 m"
+        x, y, theta = state.pose
+        if max(abs(x), abs(y), abs(theta)) > FARTHEST:
+            return f"the robot's pose is ({x:g}, {y:g}, {theta:g}): expected within 1e6 m and rad"
         if self._states and state.stamp < self._states[-1].stamp:
             return f"time went back by {self._states[-1].stamp - state.stamp:.3f} s"
         return None
