@@ -14,7 +14,7 @@ from dynastar.robot import ROBOTS
 from dynastar.ros.bag import as_read, make
 from dynastar.ros.bridge import Bridge, start_request, started
 from dynastar.ros.outgoing import Messages
-from dynastar.ros.settings import NodeSettings
+from dynastar.ros.settings import NodeSettings, robot_from, robot_of, robot_table
 
 OUT = Messages(make)
 ROOM = np.zeros((100, 100), np.int8)
@@ -110,6 +110,15 @@ def test_a_pose_from_tf_has_to_be_there_and_new():
     static = OUT.transforms([("map", "odom", Pose2D(0.5, 0.0, 0.0))], 0.0)
     bridge.take("/tf_static", static)
     assert feed(bridge, 9.0).state == "idle"
+
+
+def test_the_readings_that_mean_no_return_are_the_robots_and_are_recorded():
+    burger = ROBOTS["turtlebot3_burger"]
+    robot = robot_of(burger, burger.limits, NodeSettings(laser_nothing=(0.0, math.nan)))
+    recorded = robot_from(json.loads(json.dumps(robot_table(robot))))
+    for one in (robot, recorded):
+        assert one.lidar.nothing == pytest.approx((0.0, math.nan), nan_ok=True)
+        assert one.lidar._replace(nothing=()) == burger.lidar
 
 
 def test_the_mount_of_the_lidar_is_from_tf_unless_it_is_given(bridge):

@@ -31,6 +31,10 @@ class NodeSettings(NamedTuple):
         tuple[float, ...],
         Field("x, y, yaw of the lidar; empty: from tf, or as built in", "", -10.0, 10.0),
     ] = ()
+    laser_nothing: Annotated[
+        tuple[float, ...],
+        Field("readings that mean no return, as 0, nan or 65.5", "m", nan_is_legal=True),
+    ] = ()
     enable_stamped_cmd_vel: Annotated[bool, Field("TwistStamped overrides of Twist")] = False
     data_age: Annotated[float, AGE] = 0.2
     pose_age: Annotated[
@@ -93,6 +97,8 @@ def robot_of(base: Robot, limits: Limits, own: NodeSettings) -> Robot:
             raise ConfigError(f"'laser_pose' has {len(own.laser_pose)} values: expected x, y, yaw")
         x, y, yaw = own.laser_pose
         lidar = lidar._replace(x=x, y=y, theta=yaw)
+    if own.laser_nothing:
+        lidar = lidar._replace(nothing=own.laser_nothing)
     return replace(base, limits=limits, footprint=footprint, lidar=lidar)
 
 
