@@ -10,7 +10,8 @@ Mask = npt.NDArray[np.bool_]
 Field = npt.NDArray[np.float32]
 
 CHAMFER = 1.0 / 1.02  # the chamfer overestimates by less than 2 %
-WIDE = 24  # cells, up to which inflating by a mask is the faster way
+WIDE = 16  # cells, up to which inflating by a mask is the faster way
+ROUNDING = 1e-3  # cells, more than the error of a distance
 FAR = 1e9  # m, the clearance where nothing is blocked
 
 
@@ -77,7 +78,7 @@ def inflate(blocked: npt.ArrayLike, radius_cells: float, outside_blocked: bool =
     if radius_cells <= 0.0 or reach < 1:
         return mask.copy()
     if reach > WIDE:
-        return distance_to_squares(mask, outside_blocked) < radius_cells
+        return _inflate_widely(mask, radius_cells, outside_blocked)
     away = np.maximum(np.abs(np.arange(-reach, reach + 1)) - 0.5, 0.0)
     disc = np.hypot(away[:, None], away[None, :]) < radius_cells
     grown = cv2.dilate(
@@ -87,6 +88,27 @@ def inflate(blocked: npt.ArrayLike, radius_cells: float, outside_blocked: bool =
         borderValue=int(outside_blocked),
     )
     return grown.view(np.bool_)
+
+
+def _inflate_widely(mask: Mask, radius: float, outside_blocked: bool) -> Mask:
+    """``inflate`` by the distance to the nearest centre, which only decides up to 0.21 cells.
+
+    The nearest square is 0.5 to 0.71 cells nearer than the nearest centre. Cells in between are
+    compared with all blocked cells that are as far away as that.
+    """
+    reach = math.ceil(radius) + 1
+    padded = np.pad(mask, reach, constant_values=outside_blocked)
+    away = distance_field(padded, 1.0)[reach:-reach, reach:-reach]
+    grown = away < radius + 0.5 - ROUNDING
+    rows, columns = np.nonzero(~grown & (away < radius + math.sqrt(0.5) + ROUNDING))
+    at = np.arange(-reach, reach + 1)
+    beyond = np.maximum(np.abs(at) - 0.5, 0.0)
+    far = np.hypot(at[:, None], at) > radius + 0.5 - 2.0 * ROUNDING
+    close = np.zeros(len(rows), dtype=bool)
+    for up, right in np.argwhere(far & (np.hypot(beyond[:, None], beyond) < radius)):
+        close |= padded[rows + up, columns + right]
+    grown[rows, columns] = close
+    return grown
 
 
 def distance_to_squares(blocked: Mask, outside_blocked: bool = True) -> Field:
