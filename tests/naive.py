@@ -43,6 +43,18 @@ def shortest(occupied, start):
     return lengths
 
 
+def gap_at(blocked, cell):
+    """Cells from a cell's centre to the nearest blocked square, or to the edge of the map."""
+    if blocked[cell]:
+        return 0.0
+    gaps = [0.5 + min(at, size - 1 - at) for at, size in zip(cell, blocked.shape, strict=True)]
+    for other in np.argwhere(blocked):
+        gaps.append(
+            math.hypot(*(max(abs(a - b) - 0.5, 0.0) for a, b in zip(cell, other, strict=True)))
+        )
+    return min(gaps)
+
+
 def way_out(blocked, inflated, start, goal, radius):
     """Lengths of the shortest way out that leads on and of the path from its end, or the error.
 
@@ -55,16 +67,24 @@ def way_out(blocked, inflated, start, goal, radius):
         first = tuple(first)
         if radius <= 0.0 or away > radius + 2.0:
             return StartOccupied
-    outside = np.ones_like(blocked)
-    outside[max(start[0] - reach, 0) : start[0] + reach + 1,
-            max(start[1] - reach, 0) : start[1] + reach + 1] = False  # fmt: skip
-    lengths = shortest(blocked | outside, first)
+    gap = min(radius, gap_at(blocked, start))
+    kept = radius if gap >= radius else gap - 1.0
+    closed = blocked.copy()
+    for r, c in np.argwhere(~blocked):
+        narrow = gap_at(blocked, (r, c)) < kept
+        far = max(abs(r - start[0]), abs(c - start[1])) > reach
+        closed[r, c] = narrow or far
+    lengths = shortest(closed, first)
     exits = sorted((round(g, 6), cell) for cell, g in lengths.items() if not inflated[cell])
+    if not exits:
+        return StartOccupied
+    nearest = exits[0][0]
+    beside = nearest <= 1.5 * (radius - gap) + 2.0
     for length, cell in exits:
         rest = shortest(inflated, cell)
-        if goal in rest:
+        if goal in rest and (not beside or length <= nearest + 1.0):
             return math.dist(start, first) + length, rest[goal]
-    return NoPath if exits else StartOccupied
+    return NoPath
 
 
 def h(config, n, goal):

@@ -19,6 +19,14 @@ ROOM = """\
 #........#
 ##########
 """
+DOOR = """\
+##############
+#......#.....#
+#......#.....#
+#............#
+#......#.....#
+##############
+"""
 SPLIT = "#####\n#.#.#\n#####\n"
 MOVINGAI = "type octile\nheight 4\nwidth 5\nmap\n.....\n.@@@.\n....@\n@@@@.\n"
 SCENARIO = """\
@@ -102,6 +110,37 @@ def test_plan_as_json(capsys: pytest.CaptureFixture[str], folder: Path) -> None:
     assert result["path"][-1] == [8.5, 4.5]
     assert 7.0 < result["length"] <= result["grid_length"] + 1e-9
     assert result["time_ms"] > 0.0
+
+
+def test_plan_says_from_where_on_the_path_keeps_the_radius(
+    capsys: pytest.CaptureFixture[str], folder: Path
+) -> None:
+    words = ["plan", folder / "room.txt", "--start", 1.2, 1.5, "--goal", 8.5, 1.5, "--radius", 0.4]
+    status, out, _ = run(capsys, *words)
+    assert status == 0
+    assert "clear_from" in out
+    status, out, _ = run(capsys, *words, "--json")
+    assert 0.2 <= json.loads(out)["clear_from"] <= 0.4
+
+
+def test_plan_fails_where_only_a_door_that_is_too_narrow_leads_on(
+    capsys: pytest.CaptureFixture[str], folder: Path
+) -> None:
+    (folder / "door.txt").write_text(DOOR)
+    words = ["plan", folder / "door.txt", "--start", 2, 1.5, "--goal", 11, 3, "--radius", 1]
+    status, out, err = run(capsys, *words)
+    assert (status, out) == (1, "")
+    assert "the widest that would pass has 0.5 m, and (7.5, 2.5) is where it is narrowest" in err
+
+
+def test_a_tolerance_lets_a_path_end_beside_an_occupied_goal(
+    capsys: pytest.CaptureFixture[str], folder: Path
+) -> None:
+    words = ["plan", folder / "room.txt", "--start", 1.5, 1.5, "--goal", 8.9, 1.5, "--radius", 0.4]
+    refused(run(capsys, *words))
+    status, out, _ = run(capsys, *words, "--json", "--tolerance", 0.5)
+    assert status == 0
+    assert json.loads(out)["path"][-1] == pytest.approx([8.6, 1.5], abs=2e-3)
 
 
 def test_plan_as_a_table_and_a_picture(capsys: pytest.CaptureFixture[str], folder: Path) -> None:

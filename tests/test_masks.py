@@ -5,7 +5,7 @@ import pytest
 
 from dynastar.errors import ConfigError, MapError
 from dynastar.grid import GridFrame, OccupancyGrid
-from dynastar.masks import SpeedScale, with_keepout, with_speed_limits
+from dynastar.masks import SpeedScale, with_keepout, with_speed_limits, zone_around
 
 GRID = OccupancyGrid(np.zeros((4, 6), np.int8), GridFrame(0.5, 1.0, 2.0))
 
@@ -38,3 +38,18 @@ def test_limits_below_zero_and_scales_that_are_none_are_refused():
         with_speed_limits(GRID, mask, 2.0, SpeedScale("percent", 0.0, -1.0))
     with pytest.raises(ConfigError, match="expected one of 'percent', 'absolute'"):
         SpeedScale("m/s")
+
+
+def test_a_zone_is_what_is_connected_with_a_cell_but_for_obstacles():
+    keepout = np.zeros((6, 9), bool)
+    keepout[1:4, 1:4] = keepout[4, 4] = keepout[1:4, 6:8] = True  # (4, 4) touches by its corner
+    values = np.zeros((6, 9), np.int8)
+    values[2, 2] = 100
+    grid = OccupancyGrid(values, 1.0, keepout)
+    zone = zone_around(grid, (1, 1))
+    assert zone is not None
+    assert zone.sum() == 8
+    assert zone[1:4, 1:4].sum() == 8
+    for cell in (2, 2), (0, 0), (5, 5):
+        assert zone_around(grid, cell) is None
+    assert zone_around(OccupancyGrid(values, 1.0), (1, 1)) is None

@@ -142,3 +142,13 @@ def test_bends_are_corners_of_the_line_and_as_many_as_its_turning_points(points)
 def test_a_staircase_bends_where_it_turns():
     line = [(0.0, 0.0), (2.0, 0.0), (2.0, 3.0), (2.0, 5.0), (5.0, 5.0)]
     assert bends(line) == pytest.approx(np.array([(2.0, 0.0), (2.0, 5.0)]))
+
+
+@given(polylines, st.floats(0.0, 1.0), st.floats(0.0, 1.0))
+def test_a_part_has_the_bends_of_the_path(points, begin, end):
+    path = Path(points)
+    start, stop = sorted((begin * path.length, end * path.length))
+    part = Path(path.part(start, stop))
+    assert part.length == pytest.approx(stop - start, abs=1e-6 * (1.0 + path.length))
+    assert part.points[0] == pytest.approx(path.at(start))
+    assert part.points[-1] == pytest.approx(path.at(stop))

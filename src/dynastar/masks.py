@@ -3,6 +3,7 @@
 import math
 from typing import Annotated, Literal, NamedTuple
 
+import cv2
 import numpy as np
 import numpy.typing as npt
 
@@ -29,6 +30,19 @@ def with_keepout(grid: OccupancyGrid, mask: OccupancyGrid) -> OccupancyGrid:
     if grid.keepout is not None:
         keepout |= grid.keepout
     return OccupancyGrid(grid.values, grid.frame, keepout, grid.speed_limit)
+
+
+def zone_around(grid: OccupancyGrid, cell: tuple[int, int]) -> npt.NDArray[np.bool_] | None:
+    """The keep-out zone [rows, columns] that holds a cell: the cells without obstacles connected with it.
+
+    None if the cell is occupied, or in no zone.
+    """
+    if grid.keepout is None or not grid.keepout[cell] or grid.occupied[cell]:
+        return None
+    inside = grid.keepout & ~grid.occupied
+    _, parts = cv2.connectedComponents(inside.view(np.uint8), connectivity=4)
+    zone: npt.NDArray[np.bool_] = parts == parts[cell]
+    return zone
 
 
 def with_speed_limits(

@@ -86,6 +86,11 @@ class Path:
         count = max(2, int(np.ceil((stop - start) / spacing)) + 1)
         return self._at(np.linspace(min(start, stop), stop, count))
 
+    def part(self, start: float, stop: float) -> Floats:
+        """The points (m >= 2, 2) at ``start`` and ``stop`` metres along, and those between them."""
+        between = self.points[(start < self.arc) & (self.arc < stop)]
+        return np.vstack([self.at(start), between, self.at(stop)])
+
     def paced(self, start: float, stop: float, spacing: float) -> Floats:
         """Points (m >= 2, 2) exactly ``spacing`` metres apart along, but for the last, at the end."""
         stop = min(max(stop, start), self.length)

@@ -1,9 +1,11 @@
+import math
+
 import numpy as np
 import pytest
 
 from dynastar.errors import ConfigError, GoalOccupied, NoPath, OutOfMap, StartOccupied
 from dynastar.grid import GridFrame, OccupancyGrid
-from dynastar.planning import ALGORITHMS, GridPlanner, PlannerConfig, plan
+from dynastar.planning import ALGORITHMS, GridPlanner, PlannerConfig, SearchGrid, plan
 from naive import clearance
 
 ROOM = """
@@ -184,3 +186,60 @@ def test_at_any_angle_the_path_is_no_longer_than_the_taut_one():
     assert tuple(lines.path.points[-1]) == goal
     cells = room().frame.points_to_grid(lines.path.points)
     assert clearance(room().blocked(), cells) >= 0.8 - 1e-6
+
+
+def walled(radius, **more):
+    """A planner for a room of 6 x 4 m in cells of 5 cm with walls all round."""
+    values = np.zeros((80, 120), np.int8)
+    values[[0, -1]] = values[:, [0, -1]] = 100
+    return GridPlanner(OccupancyGrid(values, 0.05), radius, **more)
+
+
+@pytest.mark.parametrize("y", [1.0, 1.013, 1.04])
+@pytest.mark.parametrize("gap", [0.0, 0.11, 0.2, 0.24])
+def test_within_the_tolerance_a_path_ends_as_near_to_the_goal_as_the_disc_fits(gap, y):
+    planner, goal = walled(0.25), (5.95 - gap, y)
+    with pytest.raises(GoalOccupied):
+        planner.plan((1.0, 1.0), goal, tolerance=0.9 * (0.25 - gap))
+    made = planner.plan((1.0, 1.0), goal, tolerance=0.27)
+    end = made.path.points[-1]
+    assert end[0] <= 5.7 + 1e-6
+    assert math.dist(end, goal) == pytest.approx(0.25 - gap, abs=0.02)
+    assert planner.path_blocked_at(made.path.points) is None
+    assert made.grid_path.points[-1].tolist() == end.tolist()
+
+
+def test_a_goal_that_fits_is_the_end_whatever_the_tolerance():
+    assert walled(0.25).plan((1.0, 1.0), (5.0, 3.013), tolerance=1.0).path.points[-1].tolist() == [
+        5.0,
+        3.013,
+    ]
+
+
+def test_within_the_tolerance_a_place_that_can_be_reached_is_taken():
+    """The goal is free, and a wall cuts it off; or only the places nearest to it are cut off."""
+    planner = walled(0.2)
+    planner.mark(1, 80, np.ones((78, 2), bool))
+    for goal in (4.35, 2.0), (4.2, 2.0):
+        with pytest.raises((NoPath, GoalOccupied)):
+            planner.plan((1.0, 2.0), goal, tolerance=0.3)
+        end = planner.plan((1.0, 2.0), goal, tolerance=0.6).path.points[-1]
+        assert end == pytest.approx((3.8, 2.0), abs=0.03)
+
+
+def test_a_search_that_failed_is_not_repeated_until_the_map_lets_it_through(monkeypatch):
+    planner = walled(0.2)
+    planner.mark(1, 80, np.ones((78, 2), bool))
+    searches = []
+    monkeypatch.setattr(
+        SearchGrid,
+        "search",
+        lambda *given, search=SearchGrid.search: searches.append(given) or search(*given),
+    )
+    for _ in range(3):
+        with pytest.raises(NoPath):
+            planner.plan((1.0, 2.0), (5.0, 2.0))
+    assert len(searches) == 1
+    planner.mark(30, 80, np.zeros((20, 2), bool))
+    assert planner.plan((1.0, 2.0), (5.0, 2.0)).path.length == pytest.approx(4.0, abs=0.01)
+    assert len(searches) == 2

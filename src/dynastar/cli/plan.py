@@ -41,6 +41,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--radius", type=distance, default=0.0, metavar="R", help="of the robot, m (default 0)"
     )
     parser.add_argument(
+        "--tolerance",
+        type=distance,
+        default=0.0,
+        metavar="R",
+        help="distance from the goal at which the path may end where the goal cannot be reached, "
+        "m (default 0)",
+    )
+    parser.add_argument(
         "--unknown",
         choices=("free", "blocked"),
         default="blocked",
@@ -65,6 +73,7 @@ def execute(arguments: argparse.Namespace) -> int:
     settings: dict[str, Any] = {
         "planner": arguments.planner,
         "radius": arguments.radius,
+        "tolerance": arguments.tolerance,
         "unknown": arguments.unknown,
     }
     picture = check_file("--out", arguments.out)
@@ -77,6 +86,7 @@ def execute(arguments: argparse.Namespace) -> int:
         "grid_length": plan.grid_path.length,
         "expanded": plan.expanded,
         "turns": plan.path.turns,
+        **({"clear_from": plan.clear_from} if plan.clear_from > 0.0 else {}),
         "time_ms": plan.time_ms,
     }
     points = points_to_file(grid, plan.path.points) if in_file else plan.path.points

@@ -10,7 +10,7 @@ import numpy as np
 from dynastar.errors import NoPath, PlanningError
 from dynastar.grid import OccupancyGrid
 from dynastar.path import Path
-from dynastar.planning.planner import Plan
+from dynastar.planning.plan_type import Plan
 
 log = logging.getLogger("dynastar")
 
@@ -25,15 +25,24 @@ class Planner(Protocol):
     def plan(self, grid: OccupancyGrid, start: Point, goal: Point, radius: float) -> Path:
         """The path of a disc of ``radius`` metres from ``start`` to ``goal``, (x, y) in metres.
 
+        It may end elsewhere within the navigator's ``goal_tolerance``.
         What the map shows and what was seen since is occupied in ``grid``, unknown cells are as the
         navigator takes them. Raises NoPath, GoalOccupied or StartOccupied where there is none.
         """
 
 
 def plan_by(
-    planner: Planner, grid: OccupancyGrid, start: Point, goal: Point, radius: float
+    planner: Planner,
+    grid: OccupancyGrid,
+    start: Point,
+    goal: Point,
+    radius: float,
+    tolerance: float = 0.0,
 ) -> Plan:
-    """The plan of an external planner; raises PlanningError, whatever the planner raises."""
+    """The plan of an external planner, which may end ``tolerance`` metres from the goal.
+
+    Raises PlanningError, whatever the planner raises.
+    """
     name, began = type(planner).__name__, time.perf_counter()
     try:
         path = planner.plan(grid, start, goal, radius)
@@ -43,9 +52,13 @@ def plan_by(
     except Exception as error:
         log.exception("the planner %s failed", name)
         raise NoPath(f"the planner {name} failed: {error!r:.200}") from error
-    for end, wanted, what in ((0, start, "begins"), (-1, goal, "ends")):
+    off = AWAY * grid.resolution
+    for end, wanted, what, most in (
+        (0, start, "begins", off),
+        (-1, goal, "ends", max(off, tolerance)),
+    ):
         gap = math.dist(path.points[end], wanted)
-        if gap > AWAY * grid.resolution:
+        if gap > most:
             raise NoPath(
                 f"the path of the planner {name} {what} {gap:.3g} m from ({wanted[0]:g}, {wanted[1]:g})"
             )

@@ -6,8 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.clearance import inflate
-from dynastar.planning.search import Cell, SearchGrid, check_window
-from dynastar.planning.segments import is_clear, mask_bytes
+from dynastar.planning.neighbours import components
+from dynastar.planning.search import Cell, Cells, SearchGrid, check_window
+from dynastar.planning.segments import first_contact, is_clear, mask_bytes
 
 Mask = npt.NDArray[np.bool_]
 Point = tuple[float, float]
@@ -24,6 +25,7 @@ class InflatedGrid:
         self.bytes = mask_bytes(blocked)  # 1 where a cell is blocked
         self._search = SearchGrid(inflate(self.bytes, radius), self.bytes, cell)
         self._stale: tuple[int, int, int, int] | None = None  # marked: top, left, bottom, right
+        self._parts: npt.NDArray[np.int32] | None = None
 
     @property
     def blocked(self) -> Mask:
@@ -38,6 +40,13 @@ class InflatedGrid:
         self._inflate_stale()
         return self._search
 
+    @property
+    def parts(self) -> npt.NDArray[np.int32]:
+        """Number of the connected part [rows, columns] that each cell is in; 0 in the inflation."""
+        if self._parts is None:
+            self._parts = components(~self.search.occupied)
+        return self._parts
+
     def mark(self, row0: int, col0: int, patch_blocked: npt.ArrayLike) -> None:
         """Replace the window at (row0, col0), true where a cell is blocked.
 
@@ -49,6 +58,7 @@ class InflatedGrid:
         bottom, right = row0 + patch.shape[0], col0 + patch.shape[1]
         self.bytes[row0:bottom, col0:right] = patch
         self._search.recount()
+        self._parts = None
         if self._stale is not None:
             top, left, low, side = self._stale
             row0, col0 = min(row0, top), min(col0, left)
@@ -70,6 +80,33 @@ class InflatedGrid:
             if is_clear(self.bytes, *point, r + 0.5, c + 0.5, self.radius):
                 return r, c
         return None
+
+    def places_near(self, point: Point, distance: float) -> Cells:
+        """Cells (n, 2) from which the disc comes within ``distance`` cells of a point, nearest first.
+
+        A cell counts if ``as_near_as_fits`` ends that near to the point.
+        """
+        reach = math.ceil(distance) + 1
+        top, left = max(int(point[0]) - reach, 0), max(int(point[1]) - reach, 0)
+        bottom, right = int(point[0]) + reach + 1, int(point[1]) + reach + 1
+        fits = ~self.search.occupied[top:bottom, left:right]
+        cells = (np.argwhere(fits) + (top, left)).astype(np.int32)
+        away = np.hypot(*(cells + 0.5 - point).T)
+        order = np.argsort(away, kind="stable")
+        cells, near = cells[order], away[order] <= distance
+        for i in np.flatnonzero(~near & (away[order] <= distance + 1.0)):
+            end = self.as_near_as_fits((int(cells[i, 0]), int(cells[i, 1])), point)
+            near[i] = math.dist(end, point) <= distance
+        return cells[near]
+
+    def as_near_as_fits(self, cell: Cell, point: Point) -> Point:
+        """How far the disc can go straight from a cell's centre towards a point."""
+        line = np.array([(cell[0] + 0.5, cell[1] + 0.5), point])
+        at = first_contact(self.bytes, line, self.radius)
+        if at < 0.0:
+            return point
+        y, x = line[0] + (line[1] - line[0]) * (at / math.dist(*line))
+        return float(y), float(x)
 
     def _inflate_stale(self) -> None:
         """Inflate again what was marked since the last search."""

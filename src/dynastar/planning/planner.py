@@ -2,13 +2,11 @@
 
 import functools
 import time
-from dataclasses import dataclass
-from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.config import Field, choose, self_checking
+from dynastar.config import choose
 from dynastar.errors import (
     ConfigError,
     GoalOccupied,
@@ -20,12 +18,13 @@ from dynastar.errors import (
 )
 from dynastar.geometry import as_point
 from dynastar.grid import OccupancyGrid, Unknown
+from dynastar.masks import zone_around
 from dynastar.path import Path
 from dynastar.planning.any_angle import straighten
-from dynastar.planning.escape import reach_of_escape, way_out
+from dynastar.planning.escape import NO_WAY, WayOut, reach_of_escape, smoothed, way_out
 from dynastar.planning.explain import explained
-from dynastar.planning.heuristic import HeuristicConfig
 from dynastar.planning.inflated import InflatedGrid
+from dynastar.planning.plan_type import Plan, PlannerConfig
 from dynastar.planning.search import ALGORITHMS, Cell, Cells, SearchGrid, SearchResult
 from dynastar.planning.segments import first_contact, mask_bytes
 from dynastar.planning.smoothing import smooth
@@ -34,47 +33,6 @@ Mask = npt.NDArray[np.bool_]
 Point = tuple[float, float]
 
 MOST_RADIUS = 100.0  # m
-
-
-@self_checking
-class PlannerConfig(NamedTuple):
-    """Settings of the search and the smoothing of a path."""
-
-    planner: Annotated[str, Field("dijkstra, astar, jump, auto, weighted or improved")] = "improved"
-    heuristic: HeuristicConfig = HeuristicConfig()
-    smoothing: Annotated[
-        Literal["taut", "any-angle", "none"],
-        Field("pull the path taut, or also shorten it at any angle, or leave it"),
-    ] = "taut"
-    exact: Annotated[
-        bool, Field("also search exactly, and take that path if it is clearly shorter")
-    ] = False
-    rounding: Annotated[
-        float, Field("distance from a corner at which its rounding begins", "m", 0.0, 10.0)
-    ] = 0.5
-
-
-@dataclass(frozen=True, eq=False)
-class Plan:
-    """The result of a planner.
-
-    ``path`` is smoothed, ``grid_path`` the way over the cells' centres; both lie in the map frame,
-    in metres, and run exactly from start to goal. ``cells`` (n, 2) are the way's cells and ``cost``
-    their length in cells. ``expanded`` counts the cells that were expanded, ``explored`` (m, 2)
-    lists them or is None; ``time_ms`` is for search and smoothing. ``path`` keeps ``radius`` (m)
-    free from ``clear_from`` metres on; up to there it leads a start out of the inflation.
-    """
-
-    planner: str
-    path: Path
-    grid_path: Path
-    cells: Cells
-    cost: float
-    expanded: int
-    explored: Cells | None
-    time_ms: float
-    radius: float
-    clear_from: float
 
 
 class GridPlanner:
@@ -108,6 +66,7 @@ class GridPlanner:
         self._inflated_grid = InflatedGrid(
             grid.blocked(unknown), self.radius / grid.resolution, cell
         )
+        self._failed = False  # the last search found no way
 
     @property
     def blocked(self) -> Mask:
@@ -127,40 +86,73 @@ class GridPlanner:
         self._inflated_grid.mark(row0, col0, patch_blocked)
 
     def plan(
-        self, start_xy: Point, goal_xy: Point, explored: bool = False, planner: str = ""
+        self,
+        start_xy: Point,
+        goal_xy: Point,
+        explored: bool = False,
+        planner: str = "",
+        tolerance: float = 0.0,
     ) -> Plan:
         """The path from start to goal, both (x, y) in metres, by the configured planner or another.
 
         From a start inside the inflation the path first takes the shortest way out that leads on to
-        the goal. Raises OutOfMap, StartOccupied, GoalOccupied or NoPath.
+        the goal (see ``way_out``). Where the disc does not fit at the goal, or no way leads there,
+        the path ends at the nearest place that can be reached within ``tolerance`` metres. Raises
+        OutOfMap, StartOccupied, GoalOccupied or NoPath.
         """
+        start_xy, goal_xy = as_point(start_xy, "the start"), as_point(goal_xy, "the goal")
+        planner = planner or self.config.planner
         try:
-            return self._plan(start_xy, goal_xy, explored, planner)
+            goal = self._point(goal_xy, "goal")
+            self._point(start_xy, "start")
+            cell = self._inflated_grid.fitting_cell(goal)
+            if cell is not None:
+                try:
+                    only = np.array([cell], np.int32)
+                    return self._plan(start_xy, goal_xy, only, explored, planner)
+                except NoPath:
+                    if tolerance <= 0.0:
+                        raise
+            places = self._inflated_grid.places_near(goal, tolerance / self.grid.resolution)
+            if len(places) == 0:
+                raise GoalOccupied(self._misfit("goal", goal))
+            return self._plan(start_xy, goal_xy, places, explored, planner)
         except PlanningError as error:
             error.radius = self.radius
             raise
 
-    def _plan(self, start_xy: Point, goal_xy: Point, explored: bool, planner: str) -> Plan:
-        planner = planner or self.config.planner
-        start_xy, goal_xy = as_point(start_xy, "the start"), as_point(goal_xy, "the goal")
+    def reached_from(self, start_xy: Point) -> Mask:
+        """True where the disc can go from a start, or from where it leaves the inflation there.
+
+        [rows, columns]; raises OutOfMap or StartOccupied.
+        """
+        cell, _ = self._way_out(self._point(start_xy, "start"), None)
+        parts = self._inflated_grid.parts
+        reached: Mask = parts == parts[cell]
+        return reached
+
+    def _plan(
+        self, start_xy: Point, goal_xy: Point, places: Cells, explored: bool, planner: str
+    ) -> Plan:
+        """A plan to the first of ``places`` (n, 2) that can be reached, and on towards the goal."""
         warm_up()
         began = time.perf_counter()
         inflated = self._inflated_grid
         start, goal = self._point(start_xy, "start"), self._point(goal_xy, "goal")
-        goal_cell = inflated.fitting_cell(goal)
-        if goal_cell is None:
-            raise GoalOccupied(self._misfit("goal", goal))
-        way, found = self._search_from(start, goal_cell, explored, planner)
-        lead = _without_repeats(np.vstack([[start], way + 0.5]))
+        way, found = self._search_from(start, goal, places, explored, planner)
+        row, column = map(int, found.cells[-1])
+        end = inflated.as_near_as_fits((row, column), goal)
+        end_xy = goal_xy if end == goal else self.grid.frame.to_world(*end)
+        lead = _without_repeats(np.vstack([[start], way.cells + 0.5]))
         centres = found.cells + 0.5
-        if tuple(start_xy) == tuple(goal_xy):
+        if tuple(start_xy) == tuple(end_xy):
             centres = centres[:0]
-        main = _without_repeats(np.vstack([lead[-1:], centres, [goal]]))
+        main = _without_repeats(np.vstack([lead[-1:], centres, [end]]))
         grid_line = np.vstack([lead, main[1:]])
         line = grid_line
         if self.config.smoothing != "none":
             rounding = self.config.rounding / self.grid.resolution
-            lead = smooth(inflated.bytes, lead, 0.0)
+            lead = smoothed(inflated, lead, way)
             if self.config.smoothing == "any-angle":
                 taut = smooth(inflated.bytes, main, inflated.radius)
                 main = straighten(inflated.bytes, main, inflated.radius, taut)
@@ -170,10 +162,10 @@ class GridPlanner:
         lead_steps = np.diff(lead, axis=0)
         return Plan(
             planner=planner,
-            path=self._path(line, start_xy, goal_xy),
-            grid_path=self._path(grid_line, start_xy, goal_xy),
-            cells=np.vstack([way[:-1], found.cells]),
-            cost=found.cost + float(np.hypot(*np.diff(way, axis=0).T).sum()),
+            path=self._path(line, start_xy, end_xy),
+            grid_path=self._path(grid_line, start_xy, end_xy),
+            cells=np.vstack([way.cells[:-1], found.cells]),
+            cost=found.cost + float(np.hypot(*np.diff(way.cells, axis=0).T).sum()),
             expanded=found.expanded,
             explored=found.explored,
             time_ms=time_ms,
@@ -196,29 +188,52 @@ class GridPlanner:
         return None if at < 0.0 else at * self.grid.resolution
 
     def _search_from(
-        self, start: Point, goal: Cell, explored: bool, planner: str
-    ) -> tuple[Cells, SearchResult]:
-        """The shortest way out of the inflation that leads on to the goal, and the rest of the path.
-
-        The way out is empty if the start is outside the inflation.
-        """
-        inflated = self._inflated_grid
-        cell, way = inflated.fitting_cell(start), np.empty((0, 2), np.int32)
+        self, start: Point, goal: Point, places: Cells, explored: bool, planner: str
+    ) -> tuple[WayOut, SearchResult]:
+        """The way out of the inflation, and the way on to the first of ``places`` within reach."""
+        search = self._inflated_grid.search
         try:
-            if cell is None:
-                here = int(start[0]), int(start[1])
-                way = way_out(inflated, here, goal)
-                cell = int(way[-1, 0]), int(way[-1, 1])
-            return way, inflated.search.search(cell, goal, planner, self.config.heuristic, explored)
+            cell, way = self._way_out(start, places)
+            place = self._first_reached(cell, places)
+            found = search.search(cell, place, planner, self.config.heuristic, explored)
         except NoPath:
-            ends = self.grid.frame.to_world(*start), self.grid.cell_to_world(*goal)
+            self._failed = True
+            ends = self.grid.frame.to_world(*start), self.grid.frame.to_world(*goal)
             words = " to ".join(f"({x:.4g}, {y:.4g})" for x, y in ends)
             raise NoPath(f"no way leads from {words}") from None
+        self._failed = False
+        return way, found
+
+    def _way_out(self, start: Point, places: Cells | None) -> tuple[Cell, WayOut]:
+        """The cell from which a search begins, and the way out of the inflation that leads there."""
+        inflated = self._inflated_grid
+        cell = inflated.fitting_cell(start)
+        if cell is not None:
+            return cell, NO_WAY
+        here = int(start[0]), int(start[1])
+        try:
+            way = way_out(inflated, here, places, zone_around(self.grid, here))
         except StartOccupied:
             looked = reach_of_escape(inflated.radius) * self.grid.resolution
             raise StartOccupied(
                 f"{self._misfit('start', start)}, and no way out was found within {looked:.3g} m"
             ) from None
+        return (int(way.cells[-1, 0]), int(way.cells[-1, 1])), way
+
+    def _first_reached(self, cell: Cell, places: Cells) -> Cell:
+        """The first of ``places`` that is connected with a cell. Raises NoPath if none is.
+
+        A single place is left to the search, unless the last search failed: it would expand all
+        that the disc can reach, time after time.
+        """
+        row, column = map(int, places[0])
+        if len(places) > 1 or self._failed:
+            parts = self._inflated_grid.parts
+            reached = places[parts[places[:, 0], places[:, 1]] == parts[cell]]
+            if len(reached) == 0:
+                raise NoPath(f"no place can be reached from cell {cell}")
+            row, column = map(int, reached[0])
+        return row, column
 
     def _point(self, xy: Point, name: str) -> Point:
         """(row, column) of a world point in fractions of cells."""
@@ -251,15 +266,18 @@ def plan(
     radius: float = 0.0,
     unknown: Unknown = "blocked",
     explored: bool = False,
+    tolerance: float = 0.0,
 ) -> Plan:
     """Plan once from ``start`` to ``goal``, (x, y) in metres, for a disc of ``radius`` metres.
 
-    A pose or a Goal may be given for a point. Raises OutOfMap, StartOccupied, GoalOccupied or
+    A pose or a Goal may be given for a point. Where the goal cannot be reached, the path ends at the
+    nearest place within ``tolerance`` metres that can. Raises OutOfMap, StartOccupied, GoalOccupied or
     NoPath, ConfigError for an unknown planner, InputError for a map or point of another type.
     """
     config = PlannerConfig(planner=planner)
     try:
-        return GridPlanner(grid, radius, unknown, config).plan(start, goal, explored)
+        planner_on = GridPlanner(grid, radius, unknown, config)
+        return planner_on.plan(start, goal, explored, tolerance=tolerance)
     except PlanningError as error:
         raise explained(error, grid, start, goal, radius, unknown) from None
 

@@ -1,0 +1,51 @@
+"""The settings of a planner, and its result."""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal, NamedTuple
+
+from dynastar.config import Field, self_checking
+from dynastar.path import Path
+from dynastar.planning.heuristic import HeuristicConfig
+from dynastar.planning.search import Cells
+
+
+@self_checking
+class PlannerConfig(NamedTuple):
+    """Settings of the search and the smoothing of a path."""
+
+    planner: Annotated[str, Field("dijkstra, astar, jump, auto, weighted or improved")] = "improved"
+    heuristic: HeuristicConfig = HeuristicConfig()
+    smoothing: Annotated[
+        Literal["taut", "any-angle", "none"],
+        Field("pull the path taut, or also shorten it at any angle, or leave it"),
+    ] = "taut"
+    exact: Annotated[
+        bool, Field("also search exactly, and take that path if it is clearly shorter")
+    ] = False
+    rounding: Annotated[
+        float, Field("distance from a corner at which its rounding begins", "m", 0.0, 10.0)
+    ] = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """The result of a planner.
+
+    ``path`` is smoothed, ``grid_path`` the way over the cells' centres; both lie in the map frame,
+    in metres, and run exactly from the start to the goal, or to the place near the goal that a
+    tolerance allows. ``cells`` (n, 2) are the way's cells and ``cost`` their length in cells.
+    ``expanded`` counts the cells that were expanded, ``explored`` (m, 2) lists them or is None;
+    ``time_ms`` is for search and smoothing. ``path`` keeps ``radius`` (m) free from ``clear_from``
+    metres on; up to there it leads a start out of the inflation, or out of a keep-out zone.
+    """
+
+    planner: str
+    path: Path
+    grid_path: Path
+    cells: Cells
+    cost: float
+    expanded: int
+    explored: Cells | None
+    time_ms: float
+    radius: float
+    clear_from: float
