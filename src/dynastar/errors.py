@@ -51,5 +51,9 @@ class GoalOccupied(PlanningError, InputError):  # noqa: N818
     """The footprint does not fit at the goal."""
 
 
+class GoalObstructed(PlanningError):  # noqa: N818
+    """Sensed obstacles keep the robot from the goal, and no place that it can reach is nearer."""
+
+
 class NoPath(PlanningError):  # noqa: N818
     """Start and goal are free, and nothing connects them."""

@@ -1,12 +1,16 @@
 """The planners of several clearances, on a planning map that changes."""
 
+import math
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from dynastar.errors import GoalOccupied, NoPath
+from dynastar.errors import GoalObstructed, GoalOccupied, NoPath
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.navigator import NavigatorConfig
 from dynastar.navigator.planners import Planners
+from dynastar.path import Path
 from dynastar.perception import LocalMap, PlanningMap
 from dynastar.perception.local_map import SEEN_FREE, SEEN_OCCUPIED
 from dynastar.planning import GridPlanner
@@ -110,8 +114,65 @@ def test_there_is_room_to_spare_where_there_is_room():
     assert planners().plan(START, GOAL, explored=False).radius == pytest.approx(0.5)
 
 
-def test_a_goal_that_is_seen_occupied_is_said():
+def test_a_goal_that_is_seen_occupied_is_waited_for_near_by():
     made = planners()
     show(made, SEEN_OCCUPIED, 6.8, 2.8, 7.2, 3.2)
-    with pytest.raises(GoalOccupied):
+    plan = made.plan(START, GOAL, explored=False)
+    end = tuple(plan.path.points[-1])
+    assert 0.4 < math.dist(end, GOAL) < 1.0
+    assert made.blocked_at(plan.path.points) is None
+    with pytest.raises(GoalObstructed, match="an obstacle occupies the goal"):
+        made.plan(end, GOAL, explored=False)
+    show(made, SEEN_FREE, 6.8, 2.8, 7.2, 3.2)
+    assert tuple(made.plan(end, GOAL, explored=False).path.points[-1]) == GOAL
+
+
+def test_a_goal_that_sensed_obstacles_enclose_is_waited_for_near_by():
+    """It is free itself, and cannot be reached; the same far from it is no way at all."""
+    made = planners()
+    for box in (6.0, 2.0, 6.2, 4.0), (6.0, 2.0, 8.0, 2.2), (6.0, 3.8, 8.0, 4.0):
+        show(made, SEEN_OCCUPIED, *box)
+    end = made.plan(START, GOAL, explored=False).path.points[-1]
+    assert end[0] < 6.0 or abs(end[1] - 3.0) > 1.0
+    assert math.dist(end, GOAL) < 1.7
+    made = planners()
+    show(made, SEEN_OCCUPIED, 3.8, 0.0, 4.2, 6.0)
+    with pytest.raises(NoPath):
         made.plan(START, GOAL, explored=False)
+
+
+@pytest.mark.parametrize("goal", [(7.95, 3.0), (7.8, 3.0)])
+def test_a_goal_that_the_map_rules_out_is_not_waited_for(goal):
+    made = Planners(PlanningMap(room(), 0.1), CONFIG._replace(goal_tolerance=0.05), (0.3, 0.25))
+    show(made, SEEN_OCCUPIED, 3.8, 2.6, 4.2, 3.4)
+    with pytest.raises(GoalOccupied):
+        made.plan(START, goal, explored=False)
+
+
+@pytest.mark.parametrize(("gap", "radius"), [(0.7, 0.5), (0.35, 0.3), (0.12, 0.25)])
+def test_a_path_to_the_wall_ends_where_the_robot_gets_near_enough(gap, radius):
+    """A roomy plan is not taken if it ends at the rim of the tolerance."""
+    goal = 7.9 - gap, 3.0
+    config = CONFIG._replace(resolution=0.05)
+    made = Planners(PlanningMap(room(), 0.05), config, (0.3, 0.25)).plan(START, goal, False)
+    assert made.radius == pytest.approx(radius)
+    assert math.dist(made.path.points[-1], goal) <= 0.15
+
+
+def test_a_bent_way_out_is_judged_along_its_bend():
+    """Its chord is clear of the pillar that it leads round, or the other way about."""
+    made = planners()
+    plan = made.by_width[0].plan(START, GOAL)
+
+    def bent(corner):
+        points = np.array([START, corner, (3.0, 3.0), GOAL])
+        length = math.dist(START, corner) + math.dist(corner, (3.0, 3.0))
+        return replace(plan, path=Path(points), clear_from=length)
+
+    tight = made.by_width[-1].plan(START, GOAL)
+    show(made, SEEN_OCCUPIED, 1.9, 3.4, 2.1, 3.6)
+    for corner, kept in ((2.0, 3.3), False), ((2.0, 2.9), True):
+        made._ask = lambda width, *_, lead=bent(corner): (
+            tight if width is made.by_width[-1] else lead
+        )
+        assert (made.plan(START, GOAL, explored=False) is not tight) == kept

@@ -1,5 +1,6 @@
 """Whose path is driven: one that is given, that of another planner, and what counts as a replan."""
 
+import itertools
 import logging
 import math
 import re
@@ -165,6 +166,48 @@ def test_in_the_tick_that_says_blocked_nothing_is_driven():
         assert drive.now < 20.0
     assert before.v > 0.0
     assert command == REST
+
+
+def zoned(x0, y0, x1, y1):
+    """The room with a keep-out zone, metres."""
+    keepout = np.zeros((60, 80), bool)
+    keepout[round(10 * y0) : round(10 * y1), round(10 * x0) : round(10 * x1)] = True
+    return OccupancyGrid(room().values, room().frame, keepout), keepout
+
+
+def ticks_inside(drive, keepout, *states):
+    """Whether the robot's centre is in a zone, tick by tick to the end, and the metres driven there."""
+    inside, driven = [], 0.0
+    while not inside or drive.status.state not in states:
+        before = drive.pose
+        inside.append(bool(keepout[int(10 * before.y), int(10 * before.x)]))
+        drive.tick()
+        driven += inside[-1] * math.dist(before[:2], drive.pose[:2])
+        assert drive.now < 60.0, (drive.status.state, drive.status.reason)
+    return inside, driven
+
+
+@pytest.mark.parametrize(
+    ("pose", "longest"),
+    [((3.5, 2.2, 0.0), 1.9), ((3.0, 3.7, -1.5), 0.9), ((4.2, 3.0, 3.1), 1.5)],
+)
+def test_a_robot_in_a_keepout_zone_leaves_it_once_and_arrives(pose, longest):
+    known, keepout = zoned(2.0, 1.0, 5.0, 4.0)
+    drive = Drive(known, pose=pose)
+    drive.navigator.set_goal(Goal(7.0, 5.0))
+    inside, driven = ticks_inside(drive, keepout, "arrived", "blocked")
+    assert drive.status.state == "arrived"
+    assert inside[0]
+    assert driven < longest
+    assert not any(later and not now for now, later in itertools.pairwise(inside))
+
+
+def test_a_robot_outside_never_enters_a_keepout_zone():
+    known, keepout = zoned(3.0, 0.1, 5.0, 4.5)
+    drive = Drive(known, pose=(1.5, 2.0, 0.0))
+    drive.navigator.set_goal(Goal(6.5, 2.0))
+    assert not any(ticks_inside(drive, keepout, "arrived")[0])
+    assert drive.navigator.planning_map.zone is None
 
 
 class Straight:

@@ -167,3 +167,40 @@ def test_it_takes_over_cell_by_cell_what_local_maps_show(seed, merged):
     assert made.merge(local_map) is None
     assert made.under(made.barred, local_map, True).all()
     assert not made.under(made.barred, local_map, False).any()
+
+
+def test_the_zone_that_the_robot_stands_in_is_open_until_it_has_left_it():
+    keepout = np.zeros(SHAPE, bool)
+    keepout[20:40, 20:40] = keepout[20:40, 50:60] = True
+    made = PlanningMap(room(keepout=keepout), 0.1)
+    other = np.zeros(SHAPE, bool)
+    other[20:40, 50:60] = True
+    local_map = showing(made, UNSEEN, 0.0, 0.0, 0.0, 0.0)
+    closed = made.occupied_under(local_map)
+    for x, is_open in (
+        (1.9, False),
+        (2.5, True),
+        (1.9, True),
+        (1.71, True),
+        (1.69, False),
+        (1.9, False),
+    ):
+        made.place_robot(x, 3.0, 0.3)
+        assert (made.barred == (other if is_open else keepout)).all()
+        opened = closed & ~made.occupied_under(local_map)
+        assert opened.sum() == (400 if is_open else 0)
+    made.place_robot(-1.0, 3.0, 0.3)
+    assert made.zone is None
+
+
+def test_obstacles_in_an_open_zone_stay_closed():
+    keepout, values = np.zeros(SHAPE, bool), np.zeros(SHAPE, np.int8)
+    keepout[20:40, 20:40] = True
+    values[30, 30] = 100
+    made = PlanningMap(room(values, keepout=keepout), 0.1)
+    local_map = showing(made, SEEN_OCCUPIED, 2.0, 2.0, 2.1, 2.3)
+    made.merge(local_map)
+    local_map.states[:] = UNSEEN
+    closed = made.occupied_under(local_map)
+    made.place_robot(2.5, 2.5, 0.3)
+    assert (closed & ~made.occupied_under(local_map)).sum() == 400 - 4

@@ -306,7 +306,7 @@ class Navigator:
         mission = self.mission
         standing = choice.command is None or abs(choice.command.v) < STANDING
         if self.route.path is None:
-            mission.say("waiting", "there is no path for now")
+            mission.say("waiting", self.route.waits_because)
             return
         if moving and standing:
             mission.say("waiting", "a moving obstacle passes")

@@ -3,9 +3,10 @@
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.errors import GoalOccupied, NoPath, StartOccupied
+from dynastar.errors import GoalOccupied, NoPath, PlanningError, StartOccupied
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator.config import NavigatorConfig
+from dynastar.navigator.waiting_place import waiting_place, ways_to
 from dynastar.perception.planning_map import Patch, PlanningMap
 from dynastar.planning import GridPlanner, Plan, Planner, plan_by
 
@@ -15,7 +16,7 @@ LONGER = 1.03  # times the tightest plan's length, a plan with room to spare is 
 
 
 class Planners:
-    """Plans on a planning map, with room to spare where there is room.
+    """Plans on a planning map, with room to spare where there is room, up to the goal's tolerance.
 
     One planner keeps ``comfort`` more clearance than the first of ``radii`` (m), one that, and one the
     second. Where a roomier finds no way, or only a longer one, the plan is that of the next. A
@@ -29,7 +30,9 @@ class Planners:
         radii: tuple[float, float],
         planner: Planner | None = None,
     ) -> None:
-        self.planning_map = planning_map
+        self.planning_map, self.tolerance = planning_map, config.goal_tolerance
+        # A robot may stop up to a cell of its cost-to-go, two of the local map, short of its path.
+        self._roomy_tolerance = max(0.0, self.tolerance - 2.0 * planning_map.lattice[0])
         roomy, tight = radii
         self.by_width = [
             GridPlanner(
@@ -56,10 +59,16 @@ class Planners:
         """Plan with the largest clearance whose path is at most 3 % longer than the tightest plan.
 
         ``planner`` names another search than the configured one. A start too close to something
-        for a roomy planner has to be led out of that by a way that the tightest can follow. Raises
-        what the tightest planner raises.
+        for a roomy planner has to be led out of that by a way that the tightest can follow. Where
+        only sensed obstacles keep the robot from the goal, the plan ends where it waits for that.
+        Raises what the tightest planner raises, or GoalObstructed if the robot is to wait where it
+        is.
         """
-        tight = self._ask(self.by_width[-1], start, goal, explored, planner)
+        try:
+            tight = self._ask(self.by_width[-1], start, goal, explored, planner)
+        except (NoPath, GoalOccupied) as error:
+            place = self._waiting_place(start, goal, error)
+            return self._ask(self.by_width[-1], start, place, explored, planner)
         for width in self.by_width[:-1]:
             try:
                 plan = self._ask(width, start, goal, explored, planner)
@@ -67,10 +76,20 @@ class Planners:
                 continue
             if plan.path.length > LONGER * tight.path.length:
                 continue
-            lead = plan.path.resampled(0.0, plan.clear_from, 1e9)
+            lead = plan.path.part(0.0, plan.clear_from)
             if plan.clear_from == 0.0 or self.blocked_at(lead) is None:
                 return plan
         return tight
+
+    def _waiting_place(self, start: Point, goal: Point, error: PlanningError) -> Point:
+        """Where to wait for the goal. Raises ``error`` if the map alone rules the goal out."""
+        ways = ways_to(self.planning_map, goal, self.by_width[-1].radius, self.tolerance)
+        if ways is None or not self.planning_map.seen.any():
+            raise error
+        place = waiting_place(ways, self.by_width, start)
+        if place is None:
+            raise NoPath(str(error))
+        return place
 
     def blocked_at(self, points: npt.NDArray[np.float64]) -> float | None:
         """Metres along a polyline (n, 2) to where even the tightest planner could not go."""
@@ -80,8 +99,10 @@ class Planners:
         self, width: GridPlanner, start: Point, goal: Point, explored: bool, planner: str
     ) -> Plan:
         """A plan of a planner's width, by that planner or by the one that stands in for all."""
+        is_tight = width is self.by_width[-1]
+        tolerance = self.tolerance if is_tight else self._roomy_tolerance
         if self._planner is None:
-            return width.plan(start, goal, explored, planner)
+            return width.plan(start, goal, explored, planner, tolerance)
         blocked = self.planning_map.blocked.astype(np.int8)
         grid = OccupancyGrid(blocked * 100, self.planning_map.grid.frame)
-        return plan_by(self._planner, grid, start, goal, width.radius)
+        return plan_by(self._planner, grid, start, goal, width.radius, tolerance)

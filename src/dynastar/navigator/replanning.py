@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynastar.errors import GoalOccupied, NoPath, PlanningError
+from dynastar.errors import GoalObstructed, NoPath, PlanningError
 from dynastar.geometry import Goal, Pose2D
 from dynastar.guidance import PathTarget
 from dynastar.navigator.aligned import turned, turned_path, turned_pose
@@ -19,6 +19,8 @@ REPLAN_PERIOD = 1.0  # s between two plans at the least
 REVIEW_PERIOD = 5.0  # s after which a better plan is looked for
 SPACING = 0.1  # m between the points of a given path that are looked at
 BETTER = 0.9  # of what is left of a path, up to which a new one replaces it
+GOAL_IS_FREE = "the way to the goal is free"
+NO_PATH = "there is no path for now"
 CLEARLY_SHORTER = 0.99  # of the length of a path by Eq. 2, up to which an exact one replaces it
 
 
@@ -54,10 +56,12 @@ class Route:
         self._given: Path | None = None
         self._planned = False  # for this goal
         self._unsure = False  # an exact search may find a shorter path
+        self._is_short = False  # the path does not lead to the goal, only nearer or out of a zone
         self._planned_at = -math.inf
         self._no_path_since: float | None = None
         self._forgotten = 0
         self._stand = Path(np.zeros((1, 2)))  # where the robot waits while there is no path
+        self.waits_because = NO_PATH
 
     def set_map(self, planners: Planners) -> None:
         """Another map: the next tick plans anew."""
@@ -114,8 +118,10 @@ class Route:
             return KEPT
         if not reachable:
             return self._replan(state, goal, "the path is blocked nearby")
-        if changed and self._is_blocked():
+        if changed and self.planners.planning_map.zone is None and self._is_blocked():
             return self._replan(state, goal, "an obstacle blocks the path")
+        if self._is_short:
+            return self._replan(state, goal, GOAL_IS_FREE)
         if since > REVIEW_PERIOD:
             return self._replan(state, goal, "a shorter path", BETTER)
         return KEPT
@@ -150,11 +156,13 @@ class Route:
                 return KEPT
             return self._without_path(state, error)
         self._no_path_since = None
+        if reason == GOAL_IS_FREE and self._part_to_drive(plan, goal)[1]:
+            return KEPT
         if self.path is not None and plan.path.length > below * (self.path.length - self.s):
             return KEPT
         self.replans += self._planned
         self._planned, self._unsure = True, not is_review and self.planners.exact != ""
-        self._take(plan, reason)
+        self._take(plan, goal, reason)
         return REPLACED
 
     def _improve(self, state: RobotState, goal: Goal) -> RouteEvent:
@@ -167,33 +175,45 @@ class Route:
             return KEPT
         if plan.path.length > CLEARLY_SHORTER * (self.path.length - self.s):
             return KEPT
-        self._take(plan, "an exact search found a shorter path")
+        self._take(plan, goal, "an exact search found a shorter path")
         return REPLACED
 
     def _plan(self, state: RobotState, goal: Goal, planner: str) -> Plan:
         here = turned_pose(state.pose, self._yaw)
         return self.planners.plan((here.x, here.y), (goal.x, goal.y), True, planner)
 
-    def _take(self, plan: Plan, reason: str) -> None:
-        self.path, self.s = turned_path(plan.path, -self._yaw), 0.0
+    def _take(self, plan: Plan, goal: Goal, reason: str) -> None:
+        path, self._is_short = self._part_to_drive(plan, goal)
+        self.path, self.s = turned_path(path, -self._yaw), 0.0
         self.plan, self.plan_id, self.reason = plan, self.plan_id + 1, reason
+
+    def _part_to_drive(self, plan: Plan, goal: Goal) -> tuple[Path, bool]:
+        """The path to drive now, and whether it ends short of the goal.
+
+        A keep-out zone is first left; the rest is planned from there.
+        """
+        path = plan.path
+        if self.planners.planning_map.zone is not None and plan.clear_from > 0.0:
+            return Path(path.part(0.0, plan.clear_from)), True
+        return path, math.dist(path.points[-1], goal[:2]) > self.config.goal_tolerance
 
     def _without_path(self, state: RobotState, error: PlanningError) -> RouteEvent:
         """No path on the planning map: what was sensed may be gone, so forget it and plan again.
 
-        The route is blocked where nothing was sensed, and after ``attempts`` to forget it.
+        The route is blocked where nothing was sensed, and after ``attempts`` to forget it. Near an
+        obstructed goal the robot waits without limit and forgets nothing, for it sees the obstacle.
         """
-        seen = self.planners.planning_map.seen
-        sensed = isinstance(error, NoPath | GoalOccupied) and bool(seen.any())
-        if not sensed:
+        is_near = isinstance(error, GoalObstructed)
+        sensed = isinstance(error, NoPath) and bool(self.planners.planning_map.seen.any())
+        if not (is_near or sensed):
             return RouteEvent(blocked=str(error), error=error)
-        if self._forgotten >= self.config.attempts:
+        if sensed and self._forgotten >= self.config.attempts:
             return RouteEvent(blocked=f"no way is left: {error}", error=error)
-        self.path = None
+        self.path, self.waits_because = None, str(error) if is_near else NO_PATH
         if self._no_path_since is None:
             self._no_path_since = state.stamp
             self._stand = Path(np.array([state.pose[:2]]))
-        elif state.stamp - self._no_path_since > self.config.stuck_time:
+        elif sensed and state.stamp - self._no_path_since > self.config.stuck_time:
             self._forgotten += 1
             self._no_path_since = None
             self.planners.forget()

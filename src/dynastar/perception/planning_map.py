@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from dynastar.clearance import inflate
 from dynastar.grid import OccupancyGrid, Unknown
+from dynastar.masks import zone_around
 from dynastar.perception.detection import Known
 from dynastar.perception.local_map import ROUNDED, SEEN_FREE, SEEN_OCCUPIED, LocalMap
 
@@ -29,6 +30,8 @@ class PlanningMap:
     Local maps lie on the same cells: one of their cells covers ``merged`` x ``merged`` cells, more
     than one only where the map as given is much finer than ``resolution``. ``factor`` cells make one of
     the map as given. ``frame`` is that of ``grid``, turned about the origin so that its yaw is 0.
+    ``barred`` are the keep-out cells that the robot may not drive on: all but those of ``zone``, the
+    keep-out zone that it has still to leave.
     """
 
     def __init__(
@@ -42,8 +45,10 @@ class PlanningMap:
         self.blocked = self.prior.copy()
         self.seen, self.cleared = np.zeros_like(self.prior), np.zeros_like(self.prior)
         keepout = self.grid.keepout
-        self.barred: Mask = np.zeros_like(self.prior) if keepout is None else keepout
-        self._unknown = self.grid.unknown & ~self.barred
+        self._keepout: Mask = np.zeros_like(self.prior) if keepout is None else keepout
+        self.barred = self._keepout
+        self.zone: Mask | None = None
+        self._unknown = self.grid.unknown & ~self._keepout
         near = inflate(self.grid.occupied, 1.0, outside_blocked=True)
         self.known = Known(near, self.frame)
 
@@ -51,6 +56,35 @@ class PlanningMap:
     def lattice(self) -> tuple[float, tuple[float, float]]:
         """The side of a local map's cells and the corner (x, y) of one of them, metres."""
         return self.merged * self.frame.resolution, (self.frame.x, self.frame.y)
+
+    def place_robot(self, x: float, y: float, radius: float) -> None:
+        """Open the keep-out zone that holds (x, y) until the disc of ``radius`` (m) there has left it.
+
+        A robot outside of a zone does not open it, however near the zone is.
+        """
+        row, column = self.frame.to_grid(x, y)
+        if not (0 <= row < self.prior.shape[0] and 0 <= column < self.prior.shape[1]):
+            return
+        cell = int(row), int(column)
+        if self._keepout[cell]:
+            if self.zone is None or not self.zone[cell]:
+                self._open(zone_around(self.grid, cell))
+        elif self.zone is not None:
+            left = radius / self.frame.resolution
+            box = tuple(slice(max(int(at - left), 0), int(at + left) + 1) for at in (row, column))
+            away_y, away_x = (
+                np.maximum(np.abs(cells + part.start + 0.5 - at) - 0.5, 0.0)
+                for cells, part, at in zip(
+                    np.nonzero(self.zone[box]), box, (row, column), strict=True
+                )
+            )
+            away = np.hypot(away_y, away_x)
+            if away.min(initial=np.inf) >= left:
+                self._open(None)
+
+    def _open(self, zone: Mask | None) -> None:
+        self.zone = zone
+        self.barred = self._keepout if zone is None else self._keepout & ~zone
 
     def merge(self, local_map: LocalMap) -> Patch | None:
         """Mark what the local map shows occupied, clear what it shows free. Returns what changed."""
@@ -86,7 +120,10 @@ class PlanningMap:
 
     def occupied_under(self, local_map: LocalMap) -> Mask:
         """Cells (n, n) of a local map that are occupied: there, on this map, or off this map."""
-        return (local_map.states == SEEN_OCCUPIED) | self.under(self.blocked, local_map, True)
+        blocked = self.blocked
+        if self.zone is not None:
+            blocked = blocked & ~(self.zone & ~self.seen)
+        return (local_map.states == SEEN_OCCUPIED) | self.under(blocked, local_map, True)
 
     def speed_limit(self, points: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """The map's speed limit (m/s, inf for none) at points (n, 2)."""

@@ -1,0 +1,62 @@
+"""Goals that only sensed obstacles keep the robot from, and goals near walls: whole missions."""
+
+import math
+
+import pytest
+
+from driving import ROUND, Drive, room
+from dynastar.geometry import Goal
+from dynastar.navigator.waiting_place import WAIT_WITHIN
+from dynastar.simulation.lidar import LidarSimulator
+
+OCCUPIED = "an obstacle occupies the goal"
+GOAL = 6.0, 3.0
+
+
+def drive_to(goal, *boxes, **config):
+    """A drive to a goal in a room with boxes that are not on its map."""
+    drive = Drive(room(), true=room(8.0, 6.0, *boxes), **config)
+    drive.navigator.set_goal(Goal(*goal))
+    return drive
+
+
+@pytest.mark.parametrize("box", [(5.8, 2.8, 6.2, 3.2), (5.5, 2.5, 6.5, 3.5)])
+def test_an_occupied_goal_is_waited_for_near_by_and_reached_once_it_is_free(box):
+    drive = drive_to(GOAL, box, stuck_time=4.0, attempts=1)
+    drive.for_seconds(60.0)
+    assert (drive.status.state, drive.status.reason) == ("waiting", OCCUPIED)
+    assert math.dist(drive.pose[:2], GOAL) < WAIT_WITHIN
+    assert drive.status.recoveries == 0
+    before = drive.pose
+    drive.for_seconds(20.0)
+    assert math.dist(drive.pose[:2], before[:2]) < 0.1  # it stays there
+    drive.lidar = LidarSimulator(ROUND.lidar, room())
+    drive.until("arrived", seconds=100.0)
+    assert math.dist(drive.pose[:2], GOAL) <= 0.25
+
+
+def test_a_goal_shut_off_far_away_ends_blocked():
+    drive = drive_to(GOAL, (3.5, 0.0, 3.7, 6.0), stuck_time=1.0, attempts=1)
+    drive.until("blocked", seconds=30.0)
+    assert "no way is left" in drive.status.reason
+
+
+@pytest.mark.parametrize("box", [(), ((3.0, 1.0, 3.4, 1.4),)])
+def test_a_goal_that_the_map_rules_out_is_blocked_at_once(box):
+    drive = drive_to((7.95, 3.0), *box, goal_tolerance=0.2)
+    drive.tick()
+    assert drive.status.state == "blocked"
+
+
+@pytest.mark.parametrize("goal", [(7.7, 3.0), (7.72, 5.7), (3.01, 0.25)])
+def test_a_goal_a_little_too_near_a_wall_is_reached(goal):
+    drive = drive_to(goal)
+    drive.until("arrived")
+    assert math.dist(drive.pose[:2], goal) <= 0.25
+    assert drive.status.recoveries == 0
+
+
+def test_a_goal_that_is_taken_by_a_small_box_is_reached_beside_it():
+    drive = drive_to(GOAL, (6.1, 3.1, 6.3, 3.3), goal_tolerance=0.4)
+    drive.until("arrived")
+    assert math.dist(drive.pose[:2], GOAL) <= 0.4
