@@ -27,7 +27,7 @@ from dynastar.planning.inflated import InflatedGrid
 from dynastar.planning.plan_type import Plan, PlannerConfig
 from dynastar.planning.search import ALGORITHMS, Cell, Cells, SearchGrid, SearchResult
 from dynastar.planning.segments import first_contact, mask_bytes
-from dynastar.planning.smoothing import smooth
+from dynastar.planning.smoothing import smooth, without_repeats
 
 Mask = npt.NDArray[np.bool_]
 Point = tuple[float, float]
@@ -107,8 +107,8 @@ class GridPlanner:
             self._point(start_xy, "start")
             cell = self._inflated_grid.fitting_cell(goal)
             if cell is not None:
+                only = np.array([cell], np.int32)
                 try:
-                    only = np.array([cell], np.int32)
                     return self._plan(start_xy, goal_xy, only, explored, planner)
                 except NoPath:
                     if tolerance <= 0.0:
@@ -143,11 +143,11 @@ class GridPlanner:
         row, column = map(int, found.cells[-1])
         end = inflated.as_near_as_fits((row, column), goal)
         end_xy = goal_xy if end == goal else self.grid.frame.to_world(*end)
-        lead = _without_repeats(np.vstack([[start], way.cells + 0.5]))
+        lead = without_repeats(np.vstack([[start], way.cells + 0.5]))
         centres = found.cells + 0.5
         if tuple(start_xy) == tuple(end_xy):
             centres = centres[:0]
-        main = _without_repeats(np.vstack([lead[-1:], centres, [end]]))
+        main = without_repeats(np.vstack([lead[-1:], centres, [end]]))
         grid_line = np.vstack([lead, main[1:]])
         line = grid_line
         if self.config.smoothing != "none":
@@ -276,8 +276,8 @@ def plan(
     """
     config = PlannerConfig(planner=planner)
     try:
-        planner_on = GridPlanner(grid, radius, unknown, config)
-        return planner_on.plan(start, goal, explored, tolerance=tolerance)
+        prepared = GridPlanner(grid, radius, unknown, config)
+        return prepared.plan(start, goal, explored, tolerance=tolerance)
     except PlanningError as error:
         raise explained(error, grid, start, goal, radius, unknown) from None
 
@@ -304,9 +304,3 @@ def warm_up_default() -> None:
     row, column = map(int, search.search((0, 0), (29, 29), "auto").cells[3])
     search.update(row, column, [[True]])
     search.search((0, 0), (29, 29), "auto")
-
-
-def _without_repeats(line: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """A polyline (n, 2) without the points that repeat the one before."""
-    steps = np.abs(np.diff(line, axis=0)).max(axis=1)
-    return line[np.concatenate([[True], steps > 1e-9])]

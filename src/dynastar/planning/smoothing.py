@@ -234,3 +234,9 @@ def smooth(
         bad = line[~np.isfinite(line).all(axis=1)][:1].tolist()
         raise ValueError(f"a polyline to smooth has the point {bad}: expected finite numbers")
     return smoothed
+
+
+def without_repeats(line: Points) -> Points:
+    """A polyline (n, 2) without the points that repeat the one before."""
+    steps = np.abs(np.diff(line, axis=0)).max(axis=1)
+    return line[np.concatenate([[True], steps > 1e-9])]
