@@ -12,7 +12,17 @@ from dynastar.geometry import Goal
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.io.examples import example_scenarios
 from dynastar.robot import Footprint, Robot
-from dynastar.simulation import Fault, Mover, Noise, Pedestrian
+from dynastar.simulation import (
+    ControlLoop,
+    Drivetrain,
+    Fault,
+    LidarDriver,
+    Mover,
+    Noise,
+    Odometry,
+    Pedestrian,
+    Post,
+)
 from dynastar.simulation.movers import Movers
 
 SCENES = example_scenarios()
@@ -28,6 +38,8 @@ def test_each_example_comes_back(name, tmp_path):
 def same(first, second):
     for key in ("name", "noise", "latency", "goal_tolerance", "heading_tolerance", "seed"):
         assert getattr(first, key) == getattr(second, key), key
+    for key in ("drive", "odometry", "lidar", "loop"):
+        assert repr(getattr(first, key)) == repr(getattr(second, key)), key  # NaN is NaN
     for key in ("time_limit", "unknown", "preset", "navigator", "start", "goals"):
         assert getattr(first, key) == getattr(second, key), key
     assert first.robot.limits == second.robot.limits
@@ -73,6 +85,17 @@ def test_what_python_alone_can_make_comes_back(tmp_path):
     same(replace(scenario, start=(-1.0, 4.0, found.start[2])), found)
     assert math.remainder(found.start[2] - 7.5 * math.pi, math.tau) == pytest.approx(0.0, abs=1e-9)
     assert isinstance(robot, Robot)
+
+
+def test_what_hardware_does_comes_back(tmp_path):
+    scenario = replace(
+        io.load_scenario(SCENES["u_trap"]),
+        drive=Drivetrain(1.05, 0.9, 0.1, 0.02, 0.1, 0.03, 0.05),
+        odometry=Odometry(gain_omega=1.03),
+        lidar=LidarDriver(math.nan, (447, 461), 0.001, (Post(0.7, 0.16, 2), Post(-0.7, 0.2))),
+        loop=ControlLoop(0.25, 0.02),
+    )
+    same(scenario, io.load_scenario(io.save_scenario(scenario, tmp_path)))
 
 
 def test_what_no_file_can_hold_is_refused_and_nothing_is_written(tmp_path):

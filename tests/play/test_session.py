@@ -14,7 +14,7 @@ from dynastar.play import scenery, session
 from dynastar.play.messages import read_message
 from dynastar.play.session import Session
 from dynastar.play.settings import sliders
-from dynastar.simulation import World
+from dynastar.simulation import ControlLoop, Drivetrain, World
 
 SCENES = example_scenarios()
 
@@ -54,6 +54,17 @@ def test_it_arrives_at_a_goal_and_at_several_in_order(field):
     assert min(np.hypot(x - 4.0, y - 2.0) for x, y, _ in passed) < 0.3
     assert field.scenery.world.pose == pytest.approx((4.0, 4.0, 1.57), abs=0.3)
     assert field.touched == {"moving": 0, "resting": 0}
+
+
+def test_what_hardware_does_is_part_of_a_scene(field):
+    drive, loop = Drivetrain(deadband_v=1.0, deadband_omega=2.0), ControlLoop(period=0.25)
+    scenario = replace(field.scenery.scenario, drive=drive, loop=loop)
+    slow = Session(scenario, SCENES)
+    for _ in range(8):
+        slow.tick()
+    world = slow.scenery.world
+    assert (world.time, slow.lasted) == (pytest.approx(2.0), pytest.approx(0.25))
+    assert world.pose == pytest.approx((2.0, 2.0, 0.0))
 
 
 def arrived(scene):

@@ -11,6 +11,7 @@ from dynastar.geometry import Pose2D
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.robot import Lidar
 from dynastar.simulation import lidar_kernels as kernels
+from dynastar.simulation.imperfections import LidarDriver, Post
 from dynastar.simulation.lidar import LidarSimulator, free_cells
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
@@ -160,3 +161,62 @@ def test_beams_leap_over_free_cells():
     np.testing.assert_allclose(scanned(leaping)[1], scanned(stepping)[1], atol=1e-9)
     least, stepped = (min(scanned(free)[0] for _ in range(20)) for free in (leaping, stepping))
     assert least < 0.6 * stepped
+
+
+# -- what the driver makes of a scan --------------------------------------------------------------
+
+HALL = OccupancyGrid.from_occupied(np.zeros((40, 40), bool), 0.5)
+MIDDLE = Pose2D(10.0, 10.0, 0.3)
+
+
+def scanned(lidar=Lidar(360, math.tau, 0.0, 12.0), pose=MIDDLE, range_bound=0.0, **driver):
+    made = LidarSimulator(lidar, HALL, (), range_bound, driver=LidarDriver(**driver))
+    return made.scan(pose, 0.0)
+
+
+@pytest.mark.parametrize("nothing", [0.0, 12.0, 65.5, -1.0, math.inf, math.nan])
+def test_the_driver_writes_its_own_value_for_nothing(nothing):
+    true, scan = scanned(), scanned(nothing=nothing)
+    empty = np.isinf(true.ranges)
+    assert 0 < empty.sum() < 360
+    np.testing.assert_array_equal(scan.ranges[empty], np.float32(nothing))
+    np.testing.assert_array_equal(scan.ranges[~empty], true.ranges[~empty])
+
+
+@pytest.mark.parametrize("fov", [math.tau, math.radians(270.0)])
+def test_the_number_of_readings_changes_and_each_points_where_it_says(fov):
+    made = LidarSimulator(Lidar(360, fov, 0.0, 12.0), HALL, driver=LidarDriver(readings=(223, 240)))
+    counts = set()
+    for _ in range(200):
+        scan = made.scan(MIDDLE, 0.0)
+        counts.add(len(scan.ranges))
+        full = Lidar(len(scan.ranges), fov, 0.0, 12.0)
+        assert scan.angle_increment == full.increment
+        np.testing.assert_array_equal(
+            scan.ranges, LidarSimulator(full, HALL).scan(MIDDLE, 0.0).ranges
+        )
+    assert counts == set(range(223, 241))
+
+
+def test_posts_hide_what_is_behind_them():
+    posts = (Post(math.pi / 2, 0.16, 3), Post(-math.pi, 0.2), Post(0.0, 5.0, 2))
+    at_wall = Pose2D(1.0, 10.0, math.pi)
+    true, scan = scanned(pose=at_wall), scanned(pose=at_wall, posts=posts)
+    changed = np.flatnonzero(scan.ranges != true.ranges)
+    np.testing.assert_array_equal(changed, [0, 269, 270, 271])
+    np.testing.assert_allclose(scan.ranges[changed], [0.2, 0.16, 0.16, 0.16], atol=1e-6)
+
+
+def test_posts_out_of_view_are_not_seen():
+    narrow = Lidar(91, math.radians(90.0), 0.0, 5.0)
+    hidden = scanned(narrow, posts=(Post(math.pi, 0.2, 5), Post(0.9, 0.2)))
+    assert np.isinf(hidden.ranges).all()
+    seen = np.flatnonzero(np.isfinite(scanned(narrow, posts=(Post(-math.pi / 4, 0.2),)).ranges))
+    np.testing.assert_array_equal(seen, [0])
+
+
+def test_ranges_are_rounded_after_their_error():
+    scan = scanned(range_bound=0.02, rounding=0.25)
+    finite = scan.ranges[np.isfinite(scan.ranges)]
+    np.testing.assert_array_equal(finite % 0.25, 0.0)
+    assert np.abs(finite - scanned().ranges[np.isfinite(scan.ranges)]).max() <= 0.125 + 0.02 + 1e-6

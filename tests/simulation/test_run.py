@@ -19,7 +19,16 @@ from dynastar.geometry import Goal, Twist, wrap_angle
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.path import Path
 from dynastar.robot import Footprint, Limits, Robot
-from dynastar.simulation import Mover, Noise, Scenario, run
+from dynastar.simulation import (
+    ControlLoop,
+    Drivetrain,
+    LidarDriver,
+    Mover,
+    Noise,
+    Odometry,
+    Scenario,
+    run,
+)
 from dynastar.simulation.run import effective_config, start_pose
 
 QUICK = Robot("quick", Limits(1.0, 1.0, 5.0, 5.0, 5.0, 5.0), Footprint.disc(0.3))
@@ -112,6 +121,32 @@ def test_time_goes_on_until_the_robot_rests_after_its_arrival():
     assert episode.outcome == "arrived"
     assert first == pytest.approx(4.0)
     assert episode.trajectory.times[-1] == pytest.approx(9.0, abs=0.11)
+
+
+def test_what_hardware_does_is_driven_and_written_down():
+    drive, loop = Drivetrain(gain_v=0.5), ControlLoop(period=0.25)
+    made = scenario(drive=drive, loop=loop, odometry=Odometry(gain_v=2.0), time_limit=2.0)
+    episode = run(made, navigator=saying(drive=Twist(1.0, 0.0)))
+    np.testing.assert_allclose(episode.trajectory.times, 0.25 * np.arange(9))
+    assert (episode.trajectory.twists[1:, 0] == 0.5).all()
+    assert episode.scenario["drive"]["gain_v"] == 0.5
+    assert episode.scenario["loop"] == {"period": 0.25, "jitter": 0.0}
+    assert "lidar" not in episode.scenario
+
+
+def test_the_controller_gets_what_odometry_and_driver_say():
+    given = []
+
+    class Listening(Straight):
+        def command(self, state, scan):
+            given.append((state.twist.v, np.isnan(scan.ranges).any()))
+            return super().command(state, scan)
+
+    made = scenario(odometry=Odometry(gain_v=2.0), lidar=LidarDriver(nothing=math.nan))
+    episode = run(made, navigator=Listening)
+    speeds = episode.trajectory.twists[: len(given), 0]
+    np.testing.assert_allclose([v for v, _ in given], 2.0 * speeds)
+    assert any(nothing for _, nothing in given)
 
 
 def test_a_contact_while_coming_to_rest_counts():
@@ -254,6 +289,8 @@ def test_the_config_knows_the_scenario_and_its_own_overrides():
     assert (config.unknown, config.range_error, config.period) == ("free", 0.2, 0.05)
     assert config.pose_error == pytest.approx(0.03 * math.sqrt(2.0))
     assert config.heading_error == 0.04
+    rounded = effective_config(scenario(noise=Noise(0.05), lidar=LidarDriver(rounding=0.02)))
+    assert rounded.range_error == pytest.approx(0.06)
     with pytest.raises(ConfigError, match="did you mean 'latency'"):
         effective_config(scenario(navigator={"latencey": 0.1}))
 

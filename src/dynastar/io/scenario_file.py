@@ -79,6 +79,10 @@ def read_scenario(source: Mapping[str, Any], folder: Path, name: str) -> Scenari
         movers=tuple(
             read_mover(row, where, table.time_limit) for where, row in _rows(table.movers, "movers")
         ),
+        drive=table.drive,
+        odometry=table.odometry,
+        lidar=table.lidar,
+        loop=table.loop,
         latency=table.latency,
         goal_tolerance=table.goal_tolerance,
         heading_tolerance=table.heading_tolerance,

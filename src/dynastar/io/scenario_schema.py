@@ -1,5 +1,6 @@
 """JSON Schema of scenario files, from the same definitions that check them."""
 
+import math
 import types
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
@@ -65,7 +66,7 @@ def _table(cls: Any) -> Schema:
     for name, hint in hints.items():
         properties[name] = _value(hint)
         default = defaults.get(name)
-        if isinstance(default, bool | int | float | str) and default != "":
+        if isinstance(default, bool | int | float | str) and default not in ("", math.inf):
             properties[name]["default"] = default
     schema: Schema = {
         "type": "object",

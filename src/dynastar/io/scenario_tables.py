@@ -5,6 +5,7 @@ from typing import Annotated, Any, NamedTuple
 from dynastar.config import Field
 from dynastar.navigator import NavigatorConfig, Preset
 from dynastar.navigator.config import GoalTolerance, HeadingTolerance, Latency, UnknownSpace
+from dynastar.simulation.imperfections import ControlLoop, Drivetrain, LidarDriver, Odometry
 from dynastar.simulation.scenario import AfterLast
 
 DEFAULT = NavigatorConfig()
@@ -37,6 +38,10 @@ class ScenarioTable(NamedTuple):
     heading_tolerance: HeadingTolerance = DEFAULT.heading_tolerance
     preset: Annotated[Preset, Field("the navigator's settings")] = "default"
     sensor: Any = None
+    drive: Drivetrain = Drivetrain()
+    odometry: Odometry = Odometry()
+    lidar: LidarDriver = LidarDriver()
+    loop: ControlLoop = ControlLoop()
     obstacles: Any = None
     movers: Any = None
     navigator: Any = None

@@ -14,6 +14,7 @@ from dynastar.grid import OccupancyGrid
 from dynastar.io.files import written_aside
 from dynastar.io.maps import save_map
 from dynastar.robot import ROBOTS, Robot
+from dynastar.simulation.imperfections import PERFECT
 from dynastar.simulation.scenario import Mover, Scenario
 
 FILE = "scenario.toml"
@@ -54,6 +55,9 @@ def _table(scenario: Scenario, folder: Path) -> dict[str, Any]:
     table["start"] = _place(*scenario.start)
     table["robot"] = _robot(robot)
     table["sensor"] = {**robot.lidar._asdict(), **scenario.noise._asdict()}
+    for name, perfect in PERFECT.items():
+        if getattr(scenario, name) != perfect:
+            table[name] = _imperfections(getattr(scenario, name), perfect)
     if grid.speed_limit is not None:
         share = np.minimum(grid.speed_limit / robot.limits.v_max, 1.0)
         values = np.where(
@@ -84,6 +88,14 @@ def _robot(robot: Robot) -> dict[str, Any]:
         table["radius"] = robot.footprint.circumscribed
     else:
         table["polygon"] = robot.footprint.vertices.tolist()
+    return table
+
+
+def _imperfections(made: Any, perfect: Any) -> dict[str, Any]:
+    """The fields of a NamedTuple that differ from those of a perfect robot."""
+    table = {key: value for key, value in made._asdict().items() if value != getattr(perfect, key)}
+    if "posts" in table:
+        table["posts"] = [post._asdict() for post in table["posts"]]
     return table
 
 

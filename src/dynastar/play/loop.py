@@ -9,7 +9,7 @@ from concurrent.futures import Future
 from typing import Any, NamedTuple
 
 from dynastar.errors import InputError
-from dynastar.play.session import PERIOD, Session
+from dynastar.play.session import Session
 
 log = logging.getLogger("dynastar")
 
@@ -31,7 +31,7 @@ class News(NamedTuple):
 
 
 class Loop(threading.Thread):
-    """Ticks a session every ``PERIOD``; other threads ask by ``call`` and read ``news``.
+    """Ticks a session in real time; other threads ask by ``call`` and read ``news``.
 
     ``told`` is called from the loop's thread after each tick; it must not wait.
     """
@@ -69,7 +69,7 @@ class Loop(threading.Thread):
             self._ended = [*self._ended[-RATE_TICKS:], time.monotonic()]
             self.news = self._news()
             self._told()
-            due += PERIOD
+            due += self._session.lasted
             late = time.monotonic() - due
             if late > BEHIND:
                 due += late

@@ -11,7 +11,7 @@ from dynastar.config import choose
 from dynastar.episode import Episode
 from dynastar.errors import InputError
 from dynastar.geometry import Goal, Twist
-from dynastar.navigator import Navigator, RobotState
+from dynastar.navigator import Navigator
 from dynastar.navigator.config import PRESETS
 from dynastar.path import Trajectory
 from dynastar.play import messages as ask
@@ -19,6 +19,7 @@ from dynastar.play.journal import Journal, frame_data, scene_data
 from dynastar.play.scenery import Scenery
 from dynastar.play.settings import sliders, value_of, with_setting
 from dynastar.simulation import Scenario
+from dynastar.simulation.loop_timer import LoopTimer
 from dynastar.simulation.record import Recorder, goal_table
 from dynastar.simulation.run import effective_config
 from dynastar.simulation.tracing import Tracer
@@ -30,8 +31,9 @@ RECORDED = 600.0  # s that a recording holds at most; then the next begins
 class Session:
     """Drives a scenario period by period, and carries out what messages ask for.
 
-    ``journal`` is what has to be told of it, ``paused`` whether time stands still. ``scenes`` are
-    scenario files by name. Everything is called from one thread.
+    ``journal`` is what has to be told of it, ``paused`` whether time stands still, ``lasted`` the
+    length of the last tick (s). ``scenes`` are scenario files by name. Everything is called from one
+    thread.
     """
 
     def __init__(self, scenario: Scenario, scenes: Mapping[str, Path]) -> None:
@@ -65,6 +67,7 @@ class Session:
         """Begins a scene; ``_scenario`` is it as it was made, with what has been set since."""
         config = effective_config(scenario)
         self._scenario, self.scenery = scenario, Scenery(scenario)
+        self._timer, self.lasted = LoopTimer(scenario.loop, PERIOD, scenario.seed), PERIOD
         self.touched, self.halted = {"moving": 0, "resting": 0}, ""
         self._drive(config, scenario.goals)
 
@@ -110,7 +113,7 @@ class Session:
         if self.halted:
             return
         world, navigator = self.scenery.world, self.navigator
-        state, scan = RobotState(world.time, world.sensed_pose(), world.twist), world.scan()
+        state, scan = world.sensed_state(), world.scan()
         began = perf_counter()
         command = navigator.command(state, scan)
         command_ms = 1e3 * (perf_counter() - began)
@@ -121,7 +124,8 @@ class Session:
         if len(cells):
             self.journal.say("seen", cells=cells)
         self._show(command, command_ms, considered)
-        world.step(command, PERIOD)
+        self.lasted = self._timer.next() - world.time
+        world.step(command, self.lasted)
         if world.contact:
             self._touch(world.contact)
         if world.time - self._since > RECORDED:

@@ -85,12 +85,12 @@ class SimulatorNode(Node):  # type: ignore[misc]
         stamp = self._stamp()
         if self._clock_out is not None:
             self._clock_out.publish(Clock(clock=self._out.stamp(stamp)))
-        pose = world.sensed_pose()
+        state = world.sensed_state()
         if self.get_parameter("publish_odom").value:
             frames = ("odom", "base_link")
-            self._odometry.publish(self._out.odometry(pose, world.twist, frames, stamp))
+            self._odometry.publish(self._out.odometry(state.pose, state.twist, frames, stamp))
             if self._transforms is not None:
-                carried = [("map", "odom", ORIGIN), ("odom", "base_link", pose)]
+                carried = [("map", "odom", ORIGIN), ("odom", "base_link", state.pose)]
                 self._transforms.publish(self._out.transforms(carried, stamp))
         if self.get_parameter("publish_scan").value:
             self._scan.publish(self._out.scan(replace(world.scan(), stamp=stamp), "laser"))

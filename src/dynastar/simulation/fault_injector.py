@@ -1,4 +1,4 @@
-"""Applies the faults of a scenario to what the world senses and the controller commands."""
+"""Applies the faults of a scenario to what the world senses and to its drive."""
 
 import math
 from collections import deque
@@ -39,7 +39,6 @@ class FaultInjector:
         self._active: list[Fault] = []
         self._held: dict[Fault, Sensed] = {}  # what was delivered before a fault began
         self._past: deque[Sensed] = deque()
-        self._sent: deque[tuple[float, Twist]] = deque()
         self._memory = max((f.size for f in faults if f.kind == "scans_late"), default=0.0)
 
     def begin(self) -> None:
@@ -53,6 +52,8 @@ class FaultInjector:
             elif fault in self._active and now - self._begun[fault] >= self._lasts(fault):
                 self._active.remove(fault)
                 self._event("fault", f"{fault.kind} ends")
+        late = (fault.size for fault in self._active if fault.kind == "commands_late")
+        self._world.drive.late = max(late, default=0.0)
 
     def sensed(self, state: RobotState, scan: LaserScan) -> Sensed:
         """State and scan as the controller receives them."""
@@ -65,15 +66,6 @@ class FaultInjector:
         while self._past[0][0].stamp < state.stamp - self._memory - _INSTANT:
             self._past.popleft()
         return delivered
-
-    def carried(self, command: Twist) -> Twist:
-        """Command that reaches the drive after a controller's ``command``."""
-        now = self._world.time
-        self._sent.append((now, command))
-        delay = max((f.size for f in self._active if f.kind == "commands_late"), default=0.0)
-        while len(self._sent) > 1 and self._sent[1][0] <= now - delay + _INSTANT:
-            self._sent.popleft()
-        return self._sent[0][1]
 
     @staticmethod
     def _lasts(fault: Fault) -> float:

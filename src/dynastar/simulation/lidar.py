@@ -12,6 +12,7 @@ from dynastar.grid import OccupancyGrid
 from dynastar.robot import Lidar
 from dynastar.scan import LaserScan
 from dynastar.simulation import lidar_kernels as kernels
+from dynastar.simulation.imperfections import LidarDriver
 from dynastar.simulation.noise import cut_gaussian
 
 Floats = npt.NDArray[np.float64]
@@ -23,7 +24,8 @@ class LidarSimulator:
     """Casts a lidar's beams, all at one moment, against a map, polygons and discs.
 
     The map's occupied cells are solid and so is its border; unknown cells are not. ``obstacles``
-    are polygons (k, 2) in metres. Errors of up to ``range_bound`` metres come from ``random``.
+    are polygons (k, 2) in metres. ``random`` draws errors of up to ``range_bound`` metres and
+    the number of readings, if ``driver`` varies it.
     """
 
     def __init__(
@@ -33,8 +35,9 @@ class LidarSimulator:
         obstacles: Sequence[Floats] = (),
         range_bound: float = 0.0,
         random: np.random.Generator | None = None,
+        driver: LidarDriver = LidarDriver(),
     ) -> None:
-        self.lidar = lidar
+        self.lidar, self._driver = lidar, driver
         self._free = free_cells(grid)
         self._frame = tuple(map(float, grid.frame))
         self.change(obstacles)
@@ -48,12 +51,16 @@ class LidarSimulator:
     def scan(self, pose: Pose2D, stamp: float, discs: Floats = NO_DISCS) -> LaserScan:
         """Scan of a lidar of a robot at ``pose``; ``discs`` (m, 3) are x, y, radius in metres.
 
-        +inf is nothing within range_max; readings below range_min are given as they are.
+        +inf, or what the driver writes for it, is nothing within range_max; readings below range_min
+        are given as they are.
         """
         lidar = self.lidar
-        sensor = compose(pose, lidar.mount)
+        if self._driver.readings is not None:
+            low, high = sorted(self._driver.readings)
+            lidar = lidar._replace(beams=int(self._random.integers(low, high + 1)))
+        sensor, increment = compose(pose, lidar.mount), lidar.increment
         full = lidar.fov > math.tau - 1e-6
-        angle_min = -math.pi if full else -0.5 * lidar.increment * (lidar.beams - 1)
+        angle_min = -math.pi if full else -0.5 * increment * (lidar.beams - 1)
         ranges = np.empty(lidar.beams)
         kernels.cast(
             self._free,
@@ -61,22 +68,39 @@ class LidarSimulator:
             self._edges,
             discs,
             (sensor.x, sensor.y, sensor.theta + angle_min),
-            (lidar.increment, lidar.range_max),
+            (increment, lidar.range_max),
             ranges,
         )
+        self._see_posts(ranges, angle_min, increment)
         if self._range_bound > 0.0:
             error = cut_gaussian(self._random, self._range_bound, lidar.beams)
             seen = np.isfinite(ranges)
             ranges[seen] = np.clip(ranges[seen] + error[seen], 0.0, lidar.range_max)
         return LaserScan(
             stamp,
-            ranges.astype(np.float32),
+            self._written(ranges).astype(np.float32),
             angle_min,
-            lidar.increment,
+            increment,
             lidar.range_min,
             lidar.range_max,
             lidar.mount,
         )
+
+    def _see_posts(self, ranges: Floats, angle_min: float, increment: float) -> None:
+        """Puts the posts of the robot's own body into the ranges."""
+        for post in self._driver.posts:
+            middle = (post.angle - angle_min) % math.tau / increment
+            first = round(middle - 0.5 * (post.readings - 1))
+            hit = (first + np.arange(post.readings)) % max(round(math.tau / increment), 1)
+            hit = hit[hit < len(ranges)]
+            ranges[hit] = np.minimum(ranges[hit], post.distance)
+
+    def _written(self, ranges: Floats) -> Floats:
+        """The ranges as the driver writes them."""
+        driver = self._driver
+        if driver.rounding > 0.0:
+            ranges = np.round(ranges / driver.rounding) * driver.rounding
+        return np.where(np.isinf(ranges), driver.nothing, ranges)
 
 
 def edges_of(ring: Floats) -> Floats:

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from dynastar.episode import Episode, EventRecord, PlanRecord
 from dynastar.geometry import Goal, Twist
 from dynastar.path import Trajectory
+from dynastar.simulation.imperfections import PERFECT
 from dynastar.simulation.scenario import Scenario
 from dynastar.simulation.world import World
 
@@ -138,7 +139,8 @@ def described(scenario: Scenario, seed: int) -> dict[str, Any]:
     names = ("name", "start", "goals", "noise", "latency", "goal_tolerance", "heading_tolerance")
     more = ("time_limit", "unknown", "preset", "navigator", "source")
     movers = () if scenario.source else tuple(vars(mover) for mover in scenario.movers)
-    data = {name: plain(getattr(scenario, name)) for name in (*names, *more)}
+    imperfect = [name for name in PERFECT if getattr(scenario, name) != PERFECT[name]]
+    data = {name: plain(getattr(scenario, name)) for name in (*names, *more, *imperfect)}
     faults = [fault.described() for fault in scenario.faults]
     more_data = {"robot": scenario.robot.name, "seed": seed, "movers": plain(movers)}
     if scenario.crowd:

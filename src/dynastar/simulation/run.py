@@ -16,6 +16,7 @@ from dynastar.geometry import Pose2D, Twist
 from dynastar.planning.explain import explained
 from dynastar.robot import stopping_time
 from dynastar.simulation.fault_injector import FaultInjector
+from dynastar.simulation.loop_timer import LoopTimer
 from dynastar.simulation.record import Recorder
 from dynastar.simulation.scenario import Scenario
 from dynastar.simulation.tracing import Tracer
@@ -77,7 +78,7 @@ def drive(
     Raises ConfigError and ScenarioError for settings and scenarios that cannot be, and
     StartOccupied, GoalOccupied or OutOfMap for a start or goal that the navigator cannot take.
     """
-    from dynastar.navigator import Navigator, RobotState
+    from dynastar.navigator import Navigator
 
     if not scenario.goals:
         raise ScenarioError(f"the scenario '{scenario.name}' has no goal: expected one or more")
@@ -91,12 +92,11 @@ def drive(
     recorder, referee = Recorder(scenario, world), Referee(scenario, config)
     faults = FaultInjector(scenario.faults, world, controller, recorder.event, seed)
     tracer = Tracer(controller) if trace else None
-    ending, ticks = None, 0
+    ending, timer = None, LoopTimer(scenario.loop, config.period, seed)
     with _bar(scenario, progress) as bar:
         while ending is None:
             faults.begin()
-            true_state = RobotState(world.time, world.sensed_pose(), world.twist)
-            state, scan = faults.sensed(true_state, world.scan())
+            state, scan = faults.sensed(world.sensed_state(), world.scan())
             began = perf_counter()
             command = Twist(*controller.command(state, scan))
             command_ms = 1e3 * (perf_counter() - began)
@@ -108,9 +108,9 @@ def drive(
                 tracer.tick(status)
             ending = referee.ended(world, status)
             if ending is None:
-                ticks += 1
-                world.step(faults.carried(command), ticks * config.period - world.time)
-                bar.update(config.period)
+                before = world.time
+                world.step(command, timer.next() - before)
+                bar.update(world.time - before)
                 ending = referee.touched(world)
         bar.refresh()
     outcome, reason = ending
@@ -151,7 +151,8 @@ def _explained(status: Any, scenario: Scenario) -> Any:
 def effective_config(scenario: Scenario) -> Any:
     """The NavigatorConfig of a mission: the preset, the scenario's fields, its own overrides.
 
-    The declared error bounds are at least those of the scenario's noise. Raises ConfigError.
+    The declared error bounds are at least those of the scenario's noise, and of the rounding of
+    ranges. Raises ConfigError.
     """
     from dynastar.navigator import configured
 
@@ -165,7 +166,7 @@ def effective_config(scenario: Scenario) -> Any:
     }
     config = configured(scenario.preset, overrides)
     bounds = {
-        "range_error": max(config.range_error, noise.range_bound),
+        "range_error": max(config.range_error, noise.range_bound + 0.5 * scenario.lidar.rounding),
         "pose_error": max(config.pose_error, math.hypot(noise.pose_bound, noise.pose_bound)),
         "heading_error": max(config.heading_error, noise.heading_bound),
     }

@@ -13,6 +13,7 @@ from dynastar.grid import OccupancyGrid, Unknown
 from dynastar.navigator import NavigatorConfig, Preset
 from dynastar.robot import Robot
 from dynastar.simulation.faults import Fault
+from dynastar.simulation.imperfections import ControlLoop, Drivetrain, LidarDriver, Odometry
 
 Floats = npt.NDArray[np.float64]
 DEFAULT = NavigatorConfig()
@@ -63,9 +64,10 @@ class Scenario:
 
     ``start`` is (x, y, heading), heading None for "towards the first point of the path".
     ``obstacles`` are simple polygons (k, 2) in metres that no map has. ``faults`` strike during the
-    run. ``crowd`` are pedestrians who react to the robot (needs the extra ``pedestrians``).
-    ``navigator`` overrides settings of the preset, as nested tables. ``source`` is what the
-    scenario was read from.
+    run; ``drive``, ``odometry``, ``lidar`` and ``loop`` are what hardware does all the time, whatever
+    the navigator is told. ``crowd`` are pedestrians who react to the robot (needs the extra
+    ``pedestrians``). ``navigator`` overrides settings of the preset, as nested tables. ``source`` is
+    what the scenario was read from.
     """
 
     name: str
@@ -79,6 +81,10 @@ class Scenario:
     crowd: tuple[Pedestrian, ...] = ()
     faults: tuple[Fault, ...] = ()
     noise: Noise = Noise()
+    drive: Drivetrain = Drivetrain()
+    odometry: Odometry = Odometry()
+    lidar: LidarDriver = LidarDriver()
+    loop: ControlLoop = ControlLoop()
     latency: float = DEFAULT.latency
     goal_tolerance: float = DEFAULT.goal_tolerance
     heading_tolerance: float = DEFAULT.heading_tolerance

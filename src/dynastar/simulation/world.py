@@ -1,7 +1,6 @@
 """The true world: the robot as it really moves, and what it really touches (Eq. 4, section V)."""
 
 import math
-from collections import deque
 from collections.abc import Sequence
 from typing import Literal
 
@@ -10,10 +9,12 @@ import numpy.typing as npt
 
 from dynastar.errors import InputError, ScenarioError
 from dynastar.geometry import Pose2D, Twist, wrap_angle
-from dynastar.robot import Limits, arc, slew
+from dynastar.navigator import RobotState
+from dynastar.robot import Limits, arc
 from dynastar.scan import LaserScan
 from dynastar.simulation.contact import Solids
 from dynastar.simulation.crowd import Crowd
+from dynastar.simulation.drivetrain import DriveSimulator
 from dynastar.simulation.lidar import LidarSimulator
 from dynastar.simulation.movers import Movers, gap_to_discs
 from dynastar.simulation.noise import cut_gaussian
@@ -23,15 +24,13 @@ Floats = npt.NDArray[np.float64]
 Contact = Literal["", "moving", "resting"]
 
 SUBSTEP = 0.01  # s, the longest stretch driven at one twist
-REST = 1e-4  # m/s and rad/s under which the robot stands
 RESTING = 0.02  # m/s and rad/s under which a contact happens at rest
 
 
 class World:
     """True state of the robot: ``time`` (s), ``pose``, ``twist``, ``clearance`` (m), ``contact``.
 
-    The drive ramps both speeds, each on its own, towards the command that was given at least
-    ``scenario.latency`` ago. ``clearance`` is the smallest gap between footprint and anything since
+    ``drive`` is the simulated drive. ``clearance`` is the smallest gap between footprint and anything since
     the last ``step`` began; ``contact`` says what a touch was, and the world then stands still.
     Raises ScenarioError for obstacles, movers or a seed that no world can be made of.
     """
@@ -41,7 +40,7 @@ class World:
         if seed < 0:
             raise ScenarioError(f"the seed is {seed}: expected 0 or more")
         grid = scenario.grid if scenario.world is None else scenario.world
-        senses = np.random.SeedSequence(seed).spawn(2)
+        senses = np.random.SeedSequence(seed).spawn(3)
         self._scenario, self._robot = scenario, scenario.robot
         self._solids = Solids(grid, scenario.obstacles)
         self._set_movers(Movers(scenario.movers))
@@ -56,22 +55,31 @@ class World:
             scenario.obstacles,
             scenario.noise.range_bound,
             np.random.default_rng(senses[0]),
+            scenario.lidar,
         )
         self.obstacles = tuple(np.asarray(ring, dtype=np.float64) for ring in scenario.obstacles)
         self._pose_random = np.random.default_rng(senses[1])
-        self._commands: deque[tuple[float, Twist]] = deque()
-        self._wanted = Twist(0.0, 0.0)
-        self.time, self.pose, self.twist = 0.0, start, Twist(0.0, 0.0)
+        self.drive = DriveSimulator(
+            scenario.robot.limits,
+            scenario.drive,
+            scenario.latency,
+            np.random.default_rng(senses[2]),
+        )
+        self.time, self.pose = 0.0, start
         self.contact: Contact = ""
         self._solid_gap, self._travelled = 0.0, 0.0
         self.clearance = math.inf
         self._look(Twist(0.0, 0.0), thoroughly=True)
 
     @property
+    def twist(self) -> Twist:
+        """The robot's speeds over ground."""
+        return self.drive.twist
+
+    @property
     def resting(self) -> bool:
-        """Whether the robot stands and nothing it was told will move it."""
-        told = (self._wanted, *(command for _, command in self._commands))
-        return all(abs(speed) < REST for twist in (self.twist, *told) for speed in twist)
+        """Whether the robot stands and no command that it was given will move it."""
+        return self.drive.resting
 
     @property
     def movers(self) -> Floats:
@@ -83,6 +91,12 @@ class World:
         """The present scan."""
         discs = np.column_stack([self.movers, self.mover_radii])
         return self._lidar.scan(self.pose, self.time, discs)
+
+    def sensed_state(self) -> RobotState:
+        """The state as localisation and odometry tell it now, errors included."""
+        wheels, errors = self.drive.wheels, self._scenario.odometry
+        twist = Twist(errors.gain_v * wheels.v, errors.gain_omega * wheels.omega)
+        return RobotState(self.time, self.sensed_pose(), twist)
 
     def sensed_pose(self) -> Pose2D:
         """The pose as the robot's localisation tells it now, errors included."""
@@ -108,6 +122,7 @@ class World:
         self._set_obstacles(scenario.obstacles)
         self._set_movers(movers)
         self._robot, self.contact, self.clearance = scenario.robot, "", math.inf
+        self.drive.limits = scenario.robot.limits
         self._look(self.twist, thoroughly=True)
 
     def _set_movers(self, movers: Movers) -> None:
@@ -138,12 +153,10 @@ class World:
         if self.contact:
             return
         end = self.time + duration
-        self._commands.append((self.time + self._scenario.latency, saturated(command, self.limits)))
+        self.drive.take(command, self.time)
         self.clearance = math.inf
         while self.time < end and not self.contact:
-            while self._commands and self._commands[0][0] <= self.time:
-                self._wanted = self._commands.popleft()[1]
-            until = min(end, self._commands[0][0]) if self._commands else end
+            until = min(end, self.drive.act(self.time))
             substeps = math.ceil((until - self.time) / SUBSTEP - 1e-6)
             if substeps > 1:
                 until = self.time + (until - self.time) / substeps
@@ -152,17 +165,12 @@ class World:
     @property
     def limits(self) -> Limits:
         """The limits of the drive."""
-        return self._robot.limits
+        return self.drive.limits
 
     def _drive(self, until: float) -> Twist:
         """Moves along one exact arc at the mean of the speeds before and after, and returns it."""
-        limits, before, duration = self.limits, self.twist, until - self.time
-        wanted = self._wanted
-        self.twist = Twist(
-            slew(before.v, wanted.v, limits.v_accel, limits.v_brake, duration),
-            slew(before.omega, wanted.omega, limits.omega_accel, limits.omega_brake, duration),
-        )
-        mean = Twist(0.5 * (before.v + self.twist.v), 0.5 * (before.omega + self.twist.omega))
+        duration = until - self.time
+        mean = self.drive.advance(duration)
         self.pose = arc(self.pose, mean, duration)
         self.time = until
         reach = self._robot.footprint.circumscribed
@@ -188,11 +196,3 @@ class World:
         if self.clearance <= 0.0:
             at_rest = abs(twist.v) < RESTING and abs(twist.omega) < RESTING
             self.contact = "resting" if at_rest else "moving"
-
-
-def saturated(command: Twist, limits: Limits) -> Twist:
-    """The command that the drive can follow."""
-    return Twist(
-        min(max(command.v, limits.v_min), limits.v_max),
-        min(max(command.omega, -limits.omega_max), limits.omega_max),
-    )
