@@ -68,7 +68,7 @@ class LidarDriver(NamedTuple):
     """What the lidar's driver makes of a scan."""
 
     nothing: Annotated[
-        float, Field("written where nothing is in range; inf if left out", "m", nan=True)
+        float, Field("written where nothing is in range; inf if left out", "m", nan_is_legal=True)
     ] = math.inf
     readings: Annotated[
         tuple[int, int] | None,

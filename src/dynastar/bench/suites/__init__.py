@@ -21,6 +21,7 @@ SUITES = {
     "faults": "dynastar.bench.suites.faults",
     "random": "dynastar.bench.suites.random_worlds",
     "people": "dynastar.bench.suites.people",
+    "robots": "dynastar.bench.suites.robots",
     "scenarios": "dynastar.bench.suites.scenarios",
 }
 
