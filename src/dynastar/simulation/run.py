@@ -53,11 +53,12 @@ def run(
     *,
     navigator: Callable[..., Controller] | None = None,
     trace: bool = False,
+    make_world: Callable[[Scenario, Pose2D, int], World] = World,
 ) -> Episode:
     """``drive`` with warm kernels, so that ``command_ms`` tells what commands cost."""
     if navigator is None:
         warm_up()
-    return drive(scenario, progress, seed, navigator=navigator, trace=trace)
+    return drive(scenario, progress, seed, navigator=navigator, trace=trace, make_world=make_world)
 
 
 def drive(
@@ -67,13 +68,14 @@ def drive(
     *,
     navigator: Callable[..., Controller] | None = None,
     trace: bool = False,
+    make_world: Callable[[Scenario, Pose2D, int], World] = World,
 ) -> Episode:
     """Runs a mission from its start to its end and returns the record of it.
 
     ``progress`` shows a bar on stderr, in simulated seconds. ``seed`` replaces the scenario's.
     ``navigator`` is called as ``navigator(grid, robot, config)`` for what drives, by default
-    ``dynastar.Navigator``. ``trace`` keeps what it thought at each tick.
-    But for ``command_ms``, a seed gives the same Episode every time.
+    ``dynastar.Navigator``. ``trace`` keeps what it thought at each tick. ``make_world`` makes the true
+    world of a scenario, a start and a seed. But for ``command_ms``, a seed gives the same Episode.
 
     Raises ConfigError and ScenarioError for settings and scenarios that cannot be, and
     StartOccupied, GoalOccupied or OutOfMap for a start or goal that the navigator cannot take.
@@ -86,7 +88,7 @@ def drive(
         raise ScenarioError(f"the start is {scenario.start}: expected finite numbers")
     seed = scenario.seed if seed is None else seed
     config = effective_config(scenario)
-    world = World(scenario, start_pose(scenario), seed)
+    world = make_world(scenario, start_pose(scenario), seed)
     controller = (navigator or Navigator)(scenario.grid, scenario.robot, config)
     controller.set_goal(scenario.goals)
     recorder, referee = Recorder(scenario, world), Referee(scenario, config)

@@ -77,6 +77,11 @@ class World:
         return self.drive.twist
 
     @property
+    def wheels(self) -> Twist:
+        """The speeds that the wheels have, from which odometry takes its own."""
+        return self.drive.wheels
+
+    @property
     def resting(self) -> bool:
         """Whether the robot stands and no command that it was given will move it."""
         return self.drive.resting
@@ -94,7 +99,7 @@ class World:
 
     def sensed_state(self) -> RobotState:
         """The state as localisation and odometry tell it now, errors included."""
-        wheels, errors = self.drive.wheels, self._scenario.odometry
+        wheels, errors = self.wheels, self._scenario.odometry
         twist = Twist(errors.gain_v * wheels.v, errors.gain_omega * wheels.omega)
         return RobotState(self.time, self.sensed_pose(), twist)
 
