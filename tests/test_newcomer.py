@@ -112,7 +112,7 @@ def test_points_may_be_poses_and_goals_and_a_frame_the_side_of_a_cell():
 
 def test_numbers_become_floats_so_that_no_kernel_is_compiled_again():
     limits = Limits(1, 2, 3, 4, 5, 6)
-    assert limits == (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 0.0)
+    assert limits == (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 0.0, 0.0, 0.0)
     assert {type(value) for value in limits} == {float}
     config = NavigatorConfig(latency=0, dwa={"horizon": 3})
     assert type(config.latency) is type(config.dwa.horizon) is float

@@ -11,6 +11,7 @@ from dynastar.geometry import Goal
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import Navigator
 from dynastar.navigator.config import PRESETS
+from dynastar.navigator.navigator import FINE
 from dynastar.perception import MovingObstacle
 from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot
 from dynastar.simulation.lidar import LidarSimulator
@@ -283,3 +284,20 @@ def test_who_waits_for_a_path_steps_aside_for_who_comes():
             break
     assert math.dist(drive.pose[:2], where[:2]) > 0.2
     assert min(gaps) > 0.0
+
+
+def test_cells_are_halved_where_sensed_cells_leave_no_way():
+    drive = Drive(room(), true=room(8.0, 6.0, (4.0, 0.0, 4.2, 6.0)))
+    drive.navigator.set_goal(Goal(6.5, 3.0))
+    coarse = drive.navigator.planning_map.grid.resolution
+    while drive.status.recoveries < 1:
+        drive.tick()
+        assert drive.now < 60.0
+    assert drive.navigator.planning_map.grid.resolution == pytest.approx(0.5 * coarse)
+    assert drive.navigator.sensing.local_map.resolution == pytest.approx(0.5 * coarse)
+    drive.tick()
+    assert (drive.navigator.sensing.local_map.open > 0).sum() > 1000  # what was seen is kept
+    drive.until("blocked", seconds=120.0)
+    finest = 0.5 * ROUND.footprint.inscribed / FINE
+    assert drive.navigator.planning_map.grid.resolution >= finest
+    assert "no way is left" in drive.status.reason

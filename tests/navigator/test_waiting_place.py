@@ -7,6 +7,7 @@ import pytest
 from driving import ROUND, Drive, room
 from dynastar.geometry import Goal
 from dynastar.navigator.waiting_place import WAIT_WITHIN
+from dynastar.perception import MovingObstacle
 from dynastar.simulation.lidar import LidarSimulator
 
 OCCUPIED = "an obstacle occupies the goal"
@@ -22,8 +23,8 @@ def drive_to(goal, *boxes, **config):
 
 @pytest.mark.parametrize("box", [(5.8, 2.8, 6.2, 3.2), (5.5, 2.5, 6.5, 3.5)])
 def test_an_occupied_goal_is_waited_for_near_by_and_reached_once_it_is_free(box):
-    drive = drive_to(GOAL, box, stuck_time=4.0, attempts=1)
-    drive.for_seconds(60.0)
+    drive = drive_to(GOAL, box, stuck_time=15.0, attempts=4)
+    drive.for_seconds(30.0)
     assert (drive.status.state, drive.status.reason) == ("waiting", OCCUPIED)
     assert math.dist(drive.pose[:2], GOAL) < WAIT_WITHIN
     assert drive.status.recoveries == 0
@@ -33,6 +34,27 @@ def test_an_occupied_goal_is_waited_for_near_by_and_reached_once_it_is_free(box)
     drive.lidar = LidarSimulator(ROUND.lidar, room())
     drive.until("arrived", seconds=100.0)
     assert math.dist(drive.pose[:2], GOAL) <= 0.25
+
+
+def test_an_obstacle_at_the_goal_that_never_moves_ends_the_mission_in_time():
+    drive = drive_to(GOAL, (5.8, 2.8, 6.2, 3.2))
+    drive.until("waiting")
+    began = drive.now
+    drive.until("blocked", seconds=120.0)
+    assert drive.now - began == pytest.approx(4 * 6.0, abs=3.0)
+    assert OCCUPIED in drive.status.reason
+
+
+def test_a_person_at_the_goal_is_waited_for_without_limit():
+    drive = drive_to(GOAL, (5.8, 2.8, 6.2, 3.2))
+    person = MovingObstacle(6.0, 3.0, 0.0, 0.0, 0.3)
+    while drive.now < 90.0:
+        drive.tick(movers=[person])
+    assert drive.status.state == "waiting"
+    drive.lidar = LidarSimulator(ROUND.lidar, room())
+    while drive.status.state != "arrived" and drive.now < 130.0:
+        drive.tick(movers=[])
+    assert drive.status.state == "arrived"
 
 
 def test_a_goal_shut_off_far_away_ends_blocked():

@@ -6,6 +6,7 @@ import numpy as np
 
 from dynastar.dwa.motion import coast, state_at
 from dynastar.geometry import Pose2D, Twist
+from dynastar.navigator.drive_check import DriveCheck
 from dynastar.navigator.status import RobotState
 from dynastar.robot import Limits, slew, stopping_time
 
@@ -70,6 +71,7 @@ class Commands:
 
     def __init__(self, limits: Limits, period: float, latency: float) -> None:
         self.limits, self.period, self.latency = limits, period, latency
+        self.check = DriveCheck(period)
         self._sent: list[tuple[float, Twist]] = []
         self._last = REST
         self._stop = StopProfile(REST, limits)
@@ -129,7 +131,7 @@ class Commands:
         if command is None:
             return self.brake(state)
         self._stop = StopProfile(command, self.limits)
-        self._note(state.stamp, command)
+        self._note(state, command)
         return command
 
     def brake(self, state: RobotState) -> Twist:
@@ -143,13 +145,14 @@ class Commands:
             v, omega = self.when_one_acts(state)[1]
             twist = Twist(_lesser(v, self._last.v), _lesser(omega, self._last.omega))
         command = self._stop.next(twist, self.period)
-        self._note(state.stamp, command)
+        self._note(state, command)
         return command
 
-    def _note(self, now: float, command: Twist) -> None:
-        self._last = command
+    def _note(self, state: RobotState, command: Twist) -> None:
+        self._last, now = command, state.stamp
         if not math.isfinite(now):
             return
+        self.check.note(state, command)
         self._sent.append((now, command))
         while len(self._sent) > 1 and self._sent[1][0] + self.latency <= now:
             self._sent.pop(0)

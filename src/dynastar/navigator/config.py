@@ -1,5 +1,6 @@
 """The navigator's settings, and the presets."""
 
+import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, NamedTuple
 
@@ -7,6 +8,7 @@ from dynastar.config import Field, checked, choose, self_checking
 from dynastar.dwa.config import DwaConfig, Weights
 from dynastar.perception import LocalMapConfig, PredictionConfig, TrackerConfig
 from dynastar.planning import PlannerConfig
+from dynastar.robot import Robot
 
 CELLS = 4  # of the maps, at least, to a robot's inscribed radius
 
@@ -48,7 +50,7 @@ class NavigatorConfig(NamedTuple):
     ] = 0.05
     comfort: Annotated[
         float, Field("extra clearance of a plan where there is room", "m", 0.0, 5.0)
-    ] = 0.1
+    ] = 0.125
     stuck_time: Annotated[
         float, Field("time without progress until a recovery", "s", 0.5, 120.0)
     ] = 6.0
@@ -82,6 +84,14 @@ def fitted(config: NavigatorConfig, inscribed: float) -> NavigatorConfig:
     return config._replace(
         resolution=share * config.resolution, local_map=local._replace(size=share * local.size)
     )
+
+
+def margin_of(robot: Robot, config: NavigatorConfig) -> float:
+    """The margin (m) of a robot's footprint from obstacles: the declared errors."""
+    lever = math.hypot(robot.lidar.x, robot.lidar.y)
+    if not robot.footprint.is_disc:
+        lever += robot.footprint.circumscribed
+    return config.range_error + 2.0 * config.pose_error + config.heading_error * lever
 
 
 def configured(

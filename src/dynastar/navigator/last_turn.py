@@ -12,6 +12,7 @@ from dynastar.geometry import Goal, Pose2D, Twist, wrap_angle
 from dynastar.guidance import PathTarget
 from dynastar.navigator.arrival import GENTLE
 from dynastar.navigator.config import NavigatorConfig
+from dynastar.navigator.mission import Mission
 from dynastar.navigator.progress import Progress
 from dynastar.path import Path
 from dynastar.robot import Limits, slew
@@ -83,6 +84,15 @@ class LastTurn:
             self.place, self._spare = ((x, y) if found else None), ENOUGH * spare
             if found:
                 break
+
+    def judge(self, mission: Mission, now: float, angle: float | None) -> None:
+        """Say that the robot turns by an ``angle``, or has no room to; give up after a long time."""
+        mission.say("turning", NO_ROOM if angle is None else "to the goal's heading")
+        left = math.tau if angle is None else abs(angle)
+        stuck = self.progress.stuck(now, (left, 0.0), lambda left, _: left)
+        if stuck and self.progress.rounds > self.config.attempts:
+            why = f", {NO_ROOM}" if angle is None else ""
+            mission.block(f"gave up: the goal's heading cannot be reached{why}")
 
 
 def turn_by(angle: float, twist: Twist, limits: Limits, period: float) -> Twist:

@@ -3,12 +3,14 @@
 import logging
 from collections.abc import Sequence
 
+from dynastar.dwa.dwa import Choice
 from dynastar.errors import PlanningError
 from dynastar.geometry import Goal
 from dynastar.navigator.status import State
 
 log = logging.getLogger("dynastar")
 
+STANDING = 0.02  # m/s up to which the robot is said to wait
 OVER = ("idle", "arrived", "blocked")
 
 
@@ -42,6 +44,21 @@ class Mission:
         """Set the state while the mission is under way."""
         if self.state not in OVER:
             self.state, self.reason = state, reason
+
+    def say_driving(self, choice: Choice, moving: bool, waits_because: str) -> None:
+        """Set the state of a robot that drives, or waits: for a path if ``waits_because`` says so.
+
+        ``moving`` tells whether there are moving obstacles.
+        """
+        standing = choice.command is None or abs(choice.command.v) < STANDING
+        if waits_because:
+            self.say("waiting", waits_because)
+        elif moving and standing:
+            self.say("waiting", "a moving obstacle passes")
+        elif choice.refusals["moving obstacle"]:
+            self.say("avoiding", "a moving obstacle is near")
+        else:
+            self.say("following", "the path")
 
     def reach(self) -> None:
         """Drop the first goal, which is reached; without another the mission is over."""

@@ -1,28 +1,23 @@
 """The hybrid navigator (section V): perceive, route, guidance, dynamic window, send."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
 import numpy.typing as npt
 
-from dynastar.config import choose
-from dynastar.dwa.clearance import HALF_DIAGONAL
 from dynastar.dwa.config import DwaConfig
 from dynastar.dwa.dwa import Choice
-from dynastar.errors import InputError
-from dynastar.geometry import Goal, Pose2D, Twist, as_goal, as_goals
+from dynastar.geometry import Goal, Pose2D, Twist, as_goals
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator.aligned import as_moving, turned_disc, turned_goal, turned_pose
 from dynastar.navigator.arrival import has_arrived, is_near
 from dynastar.navigator.braking import Commands
-from dynastar.navigator.config import NavigatorConfig, fitted
+from dynastar.navigator.config import NavigatorConfig, fitted, margin_of
 from dynastar.navigator.driving import Driving
-from dynastar.navigator.last_turn import NO_ROOM, LastTurn, turn_by
+from dynastar.navigator.inputs import as_given_path, as_robot
+from dynastar.navigator.last_turn import LastTurn, turn_by
 from dynastar.navigator.mission import Mission
-from dynastar.navigator.planners import Planners
-from dynastar.navigator.pose_history import FARTHEST
+from dynastar.navigator.planners import Planners, radii_of
 from dynastar.navigator.progress import Progress
 from dynastar.navigator.replanning import Route
 from dynastar.navigator.sensing import Sensing
@@ -30,12 +25,11 @@ from dynastar.navigator.status import RobotState, Status, as_floats, slowed, wit
 from dynastar.path import Path
 from dynastar.perception import MovingObstacle, PlanningMap
 from dynastar.planning import Planner
-from dynastar.robot import ROBOTS, Robot
+from dynastar.robot import Robot
 from dynastar.scan import LaserScan, as_scans
 
-LONGEST_PATH = 1e5  # m of a path to follow
 TRIAL = Twist(0.1, 0.3)  # speeds up to which the robot tries whether a lidar is really frozen
-STANDING = 0.02  # m/s up to which the robot is said to wait
+FINE = 8  # cells to the inscribed radius, from which on cells are not halved
 
 
 class Navigator:
@@ -55,20 +49,11 @@ class Navigator:
         config: NavigatorConfig = NavigatorConfig(),
         planner: Planner | None = None,
     ) -> None:
-        robot = choose(robot, ROBOTS, "robot") if isinstance(robot, str) else robot
-        for what, value, kind in (
-            ("a map", grid, OccupancyGrid),
-            ("a robot", robot, Robot),
-            ("a navigator's settings", config, NavigatorConfig),
-        ):
-            if not isinstance(value, kind):
-                names = f", or one of {', '.join(ROBOTS)}" if kind is Robot else ""
-                expected = f"{kind.__name__}{names}"
-                raise InputError(f"{what}: got {type(value).__name__}, expected {expected}")
+        robot = as_robot(grid, robot, config)
         if not config.reverse:
             robot = replace(robot, limits=robot.limits._replace(v_min=max(robot.limits.v_min, 0.0)))
         config = fitted(config, robot.footprint.inscribed)
-        self.robot, self.config = robot, config
+        self.robot, self.config, self._grid = robot, config, grid
         planning_map = PlanningMap(grid, config.resolution, config.unknown)
         self.sensing = Sensing(robot, config, planning_map)
         self.progress, self.mission = Progress(config.stuck_time), Mission()
@@ -95,20 +80,18 @@ class Navigator:
     @property
     def margin(self) -> float:
         """The margin (m) kept from what may stand anywhere not observed free: the declared errors."""
-        robot, config = self.robot, self.config
-        lever = math.hypot(robot.lidar.x, robot.lidar.y)
-        if not robot.footprint.is_disc:
-            lever += robot.footprint.circumscribed
-        return config.range_error + 2.0 * config.pose_error + config.heading_error * lever
+        return margin_of(self.robot, self.config)
 
     @property
     def status(self) -> Status:
         """State of the navigator and its reason: a copy, as of the last command."""
         mission, route, choice = self.mission, self.route, self._choice
-        is_driven = mission.state not in ("idle", "arrived", "sensor_lost")
+        hints: list[str] = []  # of the drive and the lidars
+        if mission.state not in ("idle", "arrived", "sensor_lost"):
+            hints = self._commands.check.hints(self.sensing.poses) + self.sensing.hints
         return Status(
             state=mission.state,
-            reason="; ".join([mission.reason, *(self.sensing.hints if is_driven else [])]),
+            reason="; ".join([mission.reason, *hints]),
             replans=route.replans,
             recoveries=mission.recoveries,
             plan=route.plan,
@@ -133,19 +116,30 @@ class Navigator:
 
         What was seen round the robot is kept, unless the map has another yaw.
         """
-        planning_map = PlanningMap(grid, self.config.resolution, self.config.unknown)
+        self._use(grid, self.config)
+        if self.mission.state == "blocked":
+            self._set_out(self.mission.goals, "a new map")
+
+    def _use(self, grid: OccupancyGrid, config: NavigatorConfig) -> None:
+        """Plan and drive on the cells of a map, none larger than ``config`` says."""
+        self._grid, self.config = grid, config
+        planning_map = PlanningMap(grid, config.resolution, config.unknown)
         yaw = self._yaw
         if grid.frame.yaw == yaw:
             self.sensing.set_map(planning_map)
         else:
-            self.sensing = Sensing(self.robot, self.config, planning_map)
+            self.sensing = Sensing(self.robot, config, planning_map)
         before = self.driving
-        self.driving = Driving(self.robot, self.config, self.sensing.local_map, self.margin)
+        self.driving = Driving(self.robot, config, self.sensing.local_map, self.margin)
         if grid.frame.yaw == yaw:
             self.driving.carry_on(before)
         self.route.set_map(self._planners_on(planning_map))
-        if self.mission.state == "blocked":
-            self._set_out(self.mission.goals, "a new map")
+
+    def _refine(self) -> None:
+        """Use cells half as wide, if these are wide for the robot: sensed cells close narrow ways."""
+        resolution = self.planning_map.grid.resolution
+        if resolution > self.robot.footprint.inscribed / FINE:
+            self._use(self._grid, self.config._replace(resolution=0.5 * resolution))
 
     def forget(self) -> None:
         """Drop all that was sensed, but for the tracks."""
@@ -153,8 +147,7 @@ class Navigator:
         self.sensing.local_map.forget()
 
     def _planners_on(self, planning_map: PlanningMap) -> Planners:
-        shape, half_diagonal = self.robot.footprint, planning_map.grid.resolution * HALF_DIAGONAL
-        radii = shape.circumscribed + self.margin + half_diagonal, shape.inscribed + self.margin
+        radii = radii_of(self.robot.footprint, self.margin)
         return Planners(planning_map, self.config, radii, self._planner)
 
     # -- missions ---------------------------------------------------------------------------------
@@ -176,15 +169,8 @@ class Navigator:
         leads farther than 1e6 m from the map's origin or is longer than 1e5 m, and for a heading that
         a goal cannot have.
         """
-        path = path if isinstance(path, Path) else Path(path)  # type: ignore[arg-type]
-        far = float(np.abs(path.points).max())
-        if far > FARTHEST or path.length > LONGEST_PATH:
-            raise InputError(
-                f"a path is {path.length:g} m long and leads {far:g} m from the map's origin: expected "
-                f"at most {LONGEST_PATH:g} m, within {FARTHEST:g} m"
-            )
-        end = (*path.points[-1].tolist(), heading)
-        self._set_out([as_goal(end)], "new path", path)
+        path, end = as_given_path(path, heading)
+        self._set_out([end], "new path", path)
 
     def cancel(self) -> None:
         """Drop goals and path; the robot comes to rest by its certified stop and is idle."""
@@ -225,15 +211,15 @@ class Navigator:
             movers = [turned_disc(mover, -self._yaw) for mover in movers]
         if mission.regain():
             self.progress.restart(state.stamp)
-        self._commands.period = self.sensing.period
-        self.driving.window.set_period(self.sensing.period)
+        self._commands.period = self.sensing.poses.period
+        self.driving.window.set_period(self.sensing.poses.period)
         changed = self.planners.mark(self.planning_map.merge(self.sensing.local_map))
         acting = self._commands.when_one_acts(state)
         if mission.under_way and self._has_arrived(state, acting):
             mission.reach()
             self._start_over()
         if mission.under_way:
-            self._update_route(state, changed)
+            self._update_route(state, changed, movers)
         if not mission.under_way:
             return self._commands.brake(state)
         command = self._decide(state, acting, movers)
@@ -247,16 +233,20 @@ class Navigator:
             goal, state.pose, acting, self.robot.limits, config
         )
 
-    def _update_route(self, state: RobotState, changed: bool) -> None:
+    def _update_route(
+        self, state: RobotState, changed: bool, movers: Sequence[MovingObstacle] | None
+    ) -> None:
         """Keep, replace or drop the path, and tell the mission what that means."""
-        guide = self.driving.guide
+        guide, goal = self.driving.guide, self.mission.goals[0]
+        someone = self.sensing.is_moving_at(turned_goal(goal, -self._yaw), movers)
         reachable = guide is not None and guide.reachable
-        event = self.route.update(state, self.mission.goals[0], changed, reachable)
+        event = self.route.update(state, goal, changed, reachable, someone)
         if event.is_new:
             self.mission.error = None
             self.progress.restart(state.stamp)
         if event.recovery:
             self.mission.recover(state.stamp, event.recovery)
+            self._refine()
         if event.blocked:
             self.mission.block(event.blocked, event.error)
 
@@ -279,10 +269,10 @@ class Navigator:
         if at_goal and goal.heading is not None:
             rules, turn = driving.window.rules, self._last_turn
             angle = turn.angle(scene, rules, pose, goal.heading)
-            self._judge_turn(state.stamp, angle)
+            turn.judge(self.mission, state.stamp, angle)
             if angle is not None:
                 driving.forget_manoeuvre()
-                command = turn_by(angle, twist, self.robot.limits, self.sensing.period)
+                command = turn_by(angle, twist, self.robot.limits, self.sensing.poses.period)
                 return command if driving.window.admits(scene, stops, command) else None
             turn.look_for_place(scene, rules, pose, goal, state.stamp)
             if turn.place is None:
@@ -291,31 +281,17 @@ class Navigator:
         self._judge(state, choice, len(view.moving.obstacles) > 0)
         return choice.command if self.mission.under_way else None
 
-    def _judge_turn(self, now: float, angle: float | None) -> None:
-        """Say that the robot turns by an ``angle``, or has no room to; give up after a long time."""
-        reason = NO_ROOM if angle is None else "to the goal's heading"
-        self.mission.say("turning", reason)
-        left, progress = (math.tau if angle is None else abs(angle)), self._last_turn.progress
-        stuck = progress.stuck(now, (left, 0.0), lambda left, _: left)
-        if stuck and progress.rounds > self.config.attempts:
-            words = "the goal's heading cannot be reached"
-            self.mission.block(f"gave up: {words}" + (f", {NO_ROOM}" if angle is None else ""))
-
     def _judge(self, state: RobotState, choice: Choice, moving: bool) -> None:
         """Say what is going on, and start anew where there has been no progress for long."""
-        mission = self.mission
-        standing = choice.command is None or abs(choice.command.v) < STANDING
-        if self.route.path is None:
-            mission.say("waiting", self.route.waits_because)
+        mission, path = self.mission, self.route.path
+        mission.say_driving(choice, moving, "" if path is not None else self.route.waits_because)
+        if path is None:
             return
-        if moving and standing:
-            mission.say("waiting", "a moving obstacle passes")
-        elif choice.refusals["moving obstacle"]:
-            mission.say("avoiding", "a moving obstacle is near")
-        else:
-            mission.say("following", "the path")
         assert self.driving.guide is not None
         here = (state.pose.x, state.pose.y)
+        if self.route.waits_for_someone(here):
+            mission.say("waiting", "a moving obstacle is at the goal")
+            self.progress.restart(state.stamp)
         if not self.progress.stuck(state.stamp, here, self.driving.guide.cost_at):
             return
         if self.progress.rounds > self.config.attempts:

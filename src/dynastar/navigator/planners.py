@@ -9,10 +9,20 @@ from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.waiting_place import waiting_place, ways_to
 from dynastar.perception.planning_map import Patch, PlanningMap
 from dynastar.planning import GridPlanner, Plan, Planner, plan_by
+from dynastar.robot import Footprint
 
 Point = tuple[float, float]
 
+PLAN_MARGIN = 0.03  # m beyond the footprint that a plan keeps clear, at least
 LONGER = 1.03  # times the tightest plan's length, a plan with room to spare is too long
+
+
+def radii_of(footprint: Footprint, margin: float) -> tuple[float, float]:
+    """The radii (m) of a roomy plan, which lets the robot turn everywhere, and of the tightest.
+
+    ``margin`` (m) is that of the footprint from obstacles.
+    """
+    return footprint.circumscribed + margin, footprint.inscribed + max(margin, PLAN_MARGIN)
 
 
 class Planners:

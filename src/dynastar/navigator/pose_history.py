@@ -61,6 +61,18 @@ class PoseHistory:
         declared = self._config.period
         return declared if longest <= ON_TIME * declared else min(longest, LONGEST_PERIOD)
 
+    def travelled(self) -> tuple[float, float, float]:
+        """How far apart first and last pose are (m), the way by the twists (m), and the time (s)."""
+        if not self._states:
+            return 0.0, 0.0, 0.0
+        first, last = self._states[0], self._states[-1]
+        driven = sum(
+            0.5 * abs(before.twist.v + after.twist.v) * (after.stamp - before.stamp)
+            for before, after in pairwise(self._states)
+        )
+        away = math.hypot(last.pose.x - first.pose.x, last.pose.y - first.pose.y)
+        return away, driven, last.stamp - first.stamp
+
     def pose_at(self, stamp: float) -> Pose2D:
         """The pose at a time (s), interpolated between the states that are kept."""
         after = self._states[-1]

@@ -12,6 +12,7 @@ from dynastar.navigator.aligned import turned, turned_path, turned_pose
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.planners import Planners
 from dynastar.navigator.status import RobotState
+from dynastar.navigator.waiting_place import WAIT_WITHIN
 from dynastar.path import Path
 from dynastar.planning import Plan
 
@@ -62,6 +63,8 @@ class Route:
         self._forgotten = 0
         self._stand = Path(np.zeros((1, 2)))  # where the robot waits while there is no path
         self.waits_because = NO_PATH
+        self._waits_since = math.inf  # s, for an obstacle at the goal
+        self._someone = False  # a moving obstacle is at the goal
 
     def set_map(self, planners: Planners) -> None:
         """Another map: the next tick plans anew."""
@@ -76,6 +79,7 @@ class Route:
         self.path, self.s, self._given = None, 0.0, given
         self._planned = self._unsure = False
         self._no_path_since, self._forgotten = None, 0
+        self._waits_since = math.inf
 
     def drop(self) -> None:
         """Forget the path and what was sensed, so that the next tick plans anew."""
@@ -97,12 +101,17 @@ class Route:
             return PathTarget(self._stand, 0.0)
         return PathTarget(self.path, self.s, math.inf if self._given is None else ahead)
 
-    def update(self, state: RobotState, goal: Goal, changed: bool, reachable: bool) -> RouteEvent:
+    def update(
+        self, state: RobotState, goal: Goal, changed: bool, reachable: bool, someone: bool = False
+    ) -> RouteEvent:
         """Advance along, replan or drop the path for this tick.
 
         ``changed`` tells whether the planning map did, ``reachable`` whether a way leads along the path
-        out of the local map.
+        out of the local map, ``someone`` whether a moving obstacle is at the goal.
         """
+        self._someone = someone
+        if someone:
+            self._waits_since = state.stamp
         since = state.stamp - self._planned_at
         if self.path is None:
             if self._given is not None:
@@ -125,6 +134,12 @@ class Route:
         if since > REVIEW_PERIOD:
             return self._replan(state, goal, "a shorter path", BETTER)
         return KEPT
+
+    def waits_for_someone(self, here: tuple[float, float]) -> bool:
+        """Whether a moving obstacle is at the goal, and the robot near the end of the path to it."""
+        if not self._someone or self.path is None:
+            return False
+        return math.dist(here, self.path.points[-1]) < WAIT_WITHIN
 
     def _is_blocked(self) -> bool:
         """Whether the rest of the path is blocked on the planning map."""
@@ -184,6 +199,8 @@ class Route:
 
     def _take(self, plan: Plan, goal: Goal, reason: str) -> None:
         path, self._is_short = self._part_to_drive(plan, goal)
+        if not self._is_short:
+            self._waits_since = math.inf
         self.path, self.s = turned_path(path, -self._yaw), 0.0
         self.plan, self.plan_id, self.reason = plan, self.plan_id + 1, reason
 
@@ -201,9 +218,14 @@ class Route:
         """No path on the planning map: what was sensed may be gone, so forget it and plan again.
 
         The route is blocked where nothing was sensed, and after ``attempts`` to forget it. Near an
-        obstructed goal the robot waits without limit and forgets nothing, for it sees the obstacle.
+        obstructed goal the robot waits as long, and without limit for a moving obstacle, and forgets
+        nothing, for it sees the obstacle.
         """
         is_near = isinstance(error, GoalObstructed)
+        if is_near:
+            self._waits_since = min(self._waits_since, state.stamp)
+            if state.stamp - self._waits_since > self.config.attempts * self.config.stuck_time:
+                return RouteEvent(blocked=str(error), error=error)
         sensed = isinstance(error, NoPath) and bool(self.planners.planning_map.seen.any())
         if not (is_near or sensed):
             return RouteEvent(blocked=str(error), error=error)

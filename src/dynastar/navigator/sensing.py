@@ -10,7 +10,7 @@ import numpy.typing as npt
 from dynastar.clearance import lower_bounds
 from dynastar.dwa.clearance import Closed
 from dynastar.field import Field
-from dynastar.geometry import Pose2D, compose
+from dynastar.geometry import Goal, Pose2D, compose
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.pose_history import PoseHistory
 from dynastar.navigator.scan_feed import ScanFeed
@@ -26,6 +26,7 @@ from dynastar.scan import LaserScan
 Mask = npt.NDArray[np.bool_]
 
 LARGEST = MovingObstacle(1e6, 1e6, 1e3, 1e3, 1e3)  # m and m/s, of one that a caller gives
+AT_PLACE = 0.5  # m from a moving obstacle, up to which it is at a place
 SEEN_NOW = 0.15  # s that a cell counts as in view after it was seen
 
 
@@ -49,13 +50,8 @@ class Sensing:
         self.robot, self.config, self.planning_map = robot, config, planning_map
         self._keep(LocalMap(config.local_map, *planning_map.lattice))
         self.tracker = Tracker(config.tracker)
-        self._poses, self._feed = PoseHistory(robot.limits, config), ScanFeed(robot, config)
+        self.poses, self._feed = PoseHistory(robot.limits, config), ScanFeed(robot, config)
         self._at_start = True  # until the first scan
-
-    @property
-    def period(self) -> float:
-        """The time (s) between commands, as ``PoseHistory.period``."""
-        return self._poses.period
 
     def set_map(self, planning_map: PlanningMap) -> None:
         """Another map; the local map is moved onto its cells."""
@@ -81,17 +77,17 @@ class Sensing:
 
     def update(self, state: RobotState, scans: Sequence[LaserScan]) -> str | None:
         """Update local map and tracks. Returns why the data cannot be trusted, or None."""
-        fault = self._poses.fault(state)
+        fault = self.poses.fault(state)
         if fault is not None:
             return fault
         now, (x, y, _) = state.stamp, state.pose
-        jumped = self._poses.add(state)
+        jumped = self.poses.add(state)
         if jumped:
             self.local_map.forget()
             self.tracker.forget()
             self._feed.forget_poses()
         self.local_map.follow(x, y)
-        accepted, fault = self._feed.accept(scans, state, self._poses.pose_at)
+        accepted, fault = self._feed.accept(scans, state, self.poses.pose_at)
         for scan in accepted:
             self._add(scan)
         if not self._at_start:
@@ -129,6 +125,14 @@ class Sensing:
             moving=predict(self._moving(now, moving), self.config.prediction, times),
         )
 
+    def is_moving_at(self, place: Goal, moving: Sequence[MovingObstacle] | None) -> bool:
+        """Whether one of the moving obstacles, given or tracked, is within reach of a place."""
+        tracked = [track for track in self.tracker.tracks if track.state != "tentative"]
+        return any(
+            math.hypot(one.x - place.x, one.y - place.y) < one.radius + AT_PLACE
+            for one in (tracked if moving is None else moving)
+        )
+
     def _moving(self, now: float, moving: Sequence[MovingObstacle] | None) -> list[MovingObstacle]:
         """Moving obstacles as of ``now``: those given, or those tracked."""
         if moving is not None:
@@ -149,7 +153,7 @@ class Sensing:
     def _add(self, scan: LaserScan) -> None:
         """Place a scan by its stamp; tracks first, then what does not move into the local map."""
         config = self.config
-        sensor: Pose2D = compose(self._poses.pose_at(scan.stamp), scan.mount)
+        sensor: Pose2D = compose(self.poses.pose_at(scan.stamp), scan.mount)
         errors = config.range_error, config.heading_error
         view = placed(scan, sensor, errors, config.local_map.narrowest)
         moving, left = self.tracker.update(view, self.planning_map.known)

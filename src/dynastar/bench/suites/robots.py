@@ -21,7 +21,7 @@ from dynastar.bench import driven
 from dynastar.bench.bound import least_time
 from dynastar.bench.missions import Mission, Options
 from dynastar.bench.suites.random_worlds import verdict
-from dynastar.bench.suites.robots_hardware import Hardware, draw_hardware
+from dynastar.bench.suites.robots_hardware import Hardware, as_declared, draw_hardware
 from dynastar.bench.suites.robots_sold import SOLD
 from dynastar.bench.suites.robots_worlds import (
     GOAL_TOLERANCE,
@@ -87,6 +87,7 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
         return driven.realistic(perfect, options)
     return replace(
         perfect,
+        robot=as_declared(robot, hardware),
         drive=hardware.drive,
         odometry=hardware.odometry,
         lidar=hardware.lidar,

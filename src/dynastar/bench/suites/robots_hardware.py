@@ -12,16 +12,18 @@ Ranges, with the reports that they are taken from (issues on GitHub); the others
 - lag, slip, odometry, errors of ranges and poses, rounding: assumed.
 
 A careful user declares a latency that is no less than delay and lag together, the bounds of the errors,
-and the period that was asked for. Gains, dead bands, slip, jitter and posts are not declared: nothing
-tells their user.
+what the driver of the lidar writes for no return, and the period that was asked for. Gains, dead bands,
+slip, jitter and posts are not declared: nothing tells their user.
 """
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from dynastar.bench.suites.robots_sold import SoldRobot
+from dynastar.robot import Robot
 from dynastar.simulation import ControlLoop, Drivetrain, LidarDriver, Noise, Odometry
 
 Random = np.random.Generator
@@ -34,7 +36,7 @@ ODOMETRY = (0.97, 1.03)
 RANGE_ERROR, POSE_ERROR, HEADING_ERROR = (0.005, 0.03), (0.0, 0.02), (0.0, 0.01)  # m, m, rad
 ROUNDINGS = (0.0, 0.001, 0.01)  # m
 FEWEST = 0.96  # of the readings, in half of the missions of lidars that vary
-NOTHING = (math.inf, math.nan)  # values for no return that need no declaration
+NOTHING = (math.inf, math.nan, 0.0, 65.535)  # what drivers write for no return (m)
 PERIODS = (0.05, 0.1, 0.2)  # s
 JITTER = (0.0, 0.5)  # of the period
 DECLARED_STEP = 0.05  # s, to which a declared latency is rounded up
@@ -57,6 +59,13 @@ class Hardware(NamedTuple):
         delay = self.latency + self.drive.lag
         latency = DECLARED_STEP * math.ceil(delay / DECLARED_STEP - 1e-9)
         return {"period": self.period, "latency": round(latency, 6)}
+
+
+def as_declared(robot: Robot, hardware: Hardware) -> Robot:
+    """The robot with the driver's value for no return declared."""
+    nothing = hardware.lidar.nothing
+    codes = () if math.isinf(nothing) else (nothing,)
+    return replace(robot, lidar=robot.lidar._replace(nothing=codes))
 
 
 def draw_hardware(sold: SoldRobot, random: Random) -> Hardware:
