@@ -68,12 +68,10 @@ class LastTurn:
                 return way
         return None
 
-    def look_for_place(
-        self, scene: Scene, rules: Rules, pose: Pose2D, goal: Goal, now: float
-    ) -> None:
-        """Look for the place nearest to the goal that has room, at most every LOOK_PERIOD."""
+    def finds_place(self, scene: Scene, rules: Rules, pose: Pose2D, goal: Goal, now: float) -> bool:
+        """Whether there is a place with room: the nearest to the goal. Looks every LOOK_PERIOD."""
         if goal.heading is None or now - self._looked_at < LOOK_PERIOD:
-            return
+            return self.place is not None
         self._looked_at = now
         at, reach = state_at(*pose, 0.0, 0.0).pose, self.config.goal_tolerance
         for spare in SPARES:
@@ -84,6 +82,7 @@ class LastTurn:
             self.place, self._spare = ((x, y) if found else None), ENOUGH * spare
             if found:
                 break
+        return self.place is not None
 
     def judge(self, mission: Mission, now: float, angle: float | None) -> None:
         """Say that the robot turns by an ``angle``, or has no room to; give up after a long time."""

@@ -274,8 +274,7 @@ class Navigator:
                 driving.forget_manoeuvre()
                 command = turn_by(angle, twist, self.robot.limits, self.sensing.poses.period)
                 return command if driving.window.admits(scene, stops, command) else None
-            turn.look_for_place(scene, rules, pose, goal, state.stamp)
-            if turn.place is None:
+            if not turn.finds_place(scene, rules, pose, goal, state.stamp):
                 return None
         choice = self._choice = driving.choose(pose, twist, scene, stops)
         self._judge(state, choice, len(view.moving.obstacles) > 0)

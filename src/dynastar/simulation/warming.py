@@ -11,7 +11,7 @@ from dynastar.robot import ROBOTS
 from dynastar.simulation.scenario import Mover, Scenario
 from dynastar.simulation.world import World
 
-TICKS, PERIOD = 15, 0.1  # s
+TICKS, TURNS, PERIOD = 15, 3, 0.1  # s
 OPEN, BY_THE_WALL = (1.0, 1.0, 0.0), (1.0, 0.36, 0.0)  # starts; the second is in the inflation
 
 
@@ -19,22 +19,25 @@ OPEN, BY_THE_WALL = (1.0, 1.0, 0.0), (1.0, 0.36, 0.0)  # starts; the second is i
 def warm_up() -> None:
     """Drive past a box and a walker for a few seconds, as a disc and as a polygon, once a process.
 
-    Along a path first, and then to goals: by then another process may have compiled the planner.
+    First they turn where they stand, for which the polygon has no room. Then they drive along a path, and
+    last to a goal: by then another process may have compiled the planner.
     """
     occupied = np.pad(np.zeros((58, 98), np.int8), 1, constant_values=100)
     box = np.array([[3.0, 0.6], [3.5, 0.6], [3.5, 1.4], [3.0, 1.4]])
     walker = Mover(0.3, np.array([0.0, 4.0]), np.array([[5.0, 2.2], [1.0, 1.5]]))
-    goals = Goal(1.2, 1.0, 1.0), Goal(9.0, 3.0)
+    goal = Goal(9.0, 3.0)
     for name, start in ("pioneer3dx", OPEN), ("jackal", BY_THE_WALL):
         grid, robot = OccupancyGrid(occupied, 0.1), ROBOTS[name]
         scenario = Scenario(
-            "warm-up", grid, robot, start, goals, obstacles=(box,), movers=(walker,), latency=0.1
+            "warm-up", grid, robot, start, (goal,), obstacles=(box,), movers=(walker,), latency=0.1
         )
         world = World(scenario, Pose2D(*start))
         navigator = Navigator(grid, robot, NavigatorConfig(latency=0.1))
-        navigator.follow([start[:2], (9.0, 3.0)])
-        for tick in range(2 * TICKS):
-            if tick == TICKS:
-                navigator.set_goal(goals)
+        navigator.follow([start[:2]], heading=2.0)
+        for tick in range(2 * TICKS + TURNS):
+            if tick == TURNS:
+                navigator.follow([start[:2], goal[:2]])
+            if tick == TURNS + TICKS:
+                navigator.set_goal(goal)
             state = RobotState(world.time, world.pose, world.twist)
             world.step(navigator.command(state, world.scan()), PERIOD)
