@@ -4,6 +4,7 @@ import itertools
 import logging
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from dynastar.grid import OccupancyGrid
 from dynastar.navigator import Navigator
 from dynastar.path import Path
 from dynastar.planning import GridPlanner, PlannerConfig
+from dynastar.robot import ROBOTS, Footprint
 
 SQUARE = np.array([(1.5, 1.5), (6.5, 1.5), (6.5, 4.5), (1.5, 4.5), (1.5, 2.0)])
 
@@ -200,6 +202,22 @@ def test_a_robot_in_a_keepout_zone_leaves_it_once_and_arrives(pose, longest):
     assert inside[0]
     assert driven < longest
     assert not any(later and not now for now, later in itertools.pairwise(inside))
+
+
+LONG = Footprint.polygon([(0.7, -0.25), (0.7, 0.25), (-0.15, 0.25), (-0.15, -0.25)])
+
+
+@pytest.mark.parametrize("shape", [LONG, ROBOTS["jackal"].footprint], ids=["long", "jackal"])
+def test_a_robot_longer_than_wide_leaves_a_keepout_zone_with_all_of_its_footprint(shape):
+    """The zone stays open until the disc round the robot has left, so that it can still turn."""
+    known, keepout = zoned(2.0, 1.0, 5.0, 3.2)
+    keepout[10:45, 20:27] = True  # the zone has an arm
+    robot = replace(ROUND, footprint=shape, limits=ROUND.limits._replace(v_min=-0.3))
+    drive = Drive(OccupancyGrid(known.values, known.frame, keepout), robot, (3.5, 2.2, 0.0))
+    drive.navigator.set_goal(Goal(7.0, 5.0))
+    ticks_inside(drive, keepout, "arrived", "blocked")
+    assert drive.status.state == "arrived"
+    assert drive.navigator.planning_map.zone is None
 
 
 def test_a_robot_outside_never_enters_a_keepout_zone():

@@ -1,7 +1,8 @@
 """What a suite is made of: missions, the options they are run with, and where its data lie."""
 
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from itertools import count
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
@@ -63,6 +64,12 @@ class Suite(Protocol):
         ``time_ratio``, ``tick_ms_median``, ``tick_ms_p99``, ``limited``. Called in a worker
         process; ``repeat`` counts from 0, and so ``options.seed + repeat`` is its seed.
         """
+
+
+def endless(options: Options) -> Iterator[Mission]:
+    """Missions without end, numbered from 0; a mission is its number and the suite's seed."""
+    del options
+    return map(Mission, count())
 
 
 def data_folder(options: Options, suite: str, holds: str, folder: str = "") -> Path:

@@ -6,7 +6,6 @@ path; a disc goes to and fro on a straight free lane across the middle.
 """
 
 import math
-from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any
 
@@ -14,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.bench import driven
-from dynastar.bench.missions import Mission, Options
+from dynastar.bench.missions import Mission, Options, endless
 from dynastar.bench.own_maps import own_twenty
 from dynastar.errors import DataError, NoPath
 from dynastar.geometry import Goal
@@ -42,14 +41,7 @@ TOLERANCE, TIME_LIMIT = 0.5, 400.0
 Mask = npt.NDArray[np.bool_]
 Lane = npt.NDArray[np.float64]
 
-
-def missions(options: Options) -> Iterator[Mission]:
-    """Worlds without end; a world is its number and the suite's seed."""
-    del options
-    number = 0
-    while True:
-        yield Mission(number)
-        number += 1
+missions = endless
 
 
 def leave_out(mission: Mission, options: Options) -> str:

@@ -15,7 +15,7 @@ EXACT_WITHIN = 0.3  # m between obstacle and footprint, beyond which its circle 
 
 
 class Closed(NamedTuple):
-    """Cells that were not observed free: ``distance`` to the nearest, and what stands in them.
+    """Cells that were not observed free: the ``distance`` to the nearest, and the hits in them.
 
     ``hits`` (rows, columns) are the boxes of the hits in the cells that are ``occupied``, metres from
     a cell's centre. In the others an obstacle may be up to half a diagonal from the centre.

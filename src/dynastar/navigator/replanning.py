@@ -207,11 +207,12 @@ class Route:
     def _part_to_drive(self, plan: Plan, goal: Goal) -> tuple[Path, bool]:
         """The path to drive now, and whether it ends short of the goal.
 
-        A keep-out zone is first left; the rest is planned from there.
+        A keep-out zone is first left, by a radius more than the plan asks for, since the robot stops a
+        little short of a path's end; the rest is planned from there.
         """
         path = plan.path
         if self.planners.planning_map.zone is not None and plan.clear_from > 0.0:
-            return Path(path.part(0.0, plan.clear_from)), True
+            return Path(path.part(0.0, plan.clear_from + plan.radius)), True
         return path, math.dist(path.points[-1], goal[:2]) > self.config.goal_tolerance
 
     def _without_path(self, state: RobotState, error: PlanningError) -> RouteEvent:

@@ -97,7 +97,7 @@ class Sensing:
             mapped = self._under(self.planning_map.grid.occupied, outside=True)
             self.local_map.assume_free((x, y, radius), now, mapped)
         self._at_start = self._at_start and self._feed.newest == -math.inf
-        self.planning_map.place_robot(x, y, self.robot.footprint.inscribed)
+        self.planning_map.place_robot(x, y, self.robot.footprint.circumscribed)
         self.local_map.update(now, self._under(self.planning_map.barred, outside=False))
         return fault
 

@@ -19,13 +19,15 @@ NEARER = 0.3  # m by which a place to wait has to be nearer to the goal
 
 
 class WaysToGoal(NamedTuple):
-    """Lengths (m) [rows, columns] of the ways to a goal by the map alone, and the first cell's index.
+    """Lengths (m) [rows, columns] of the ways to a goal by the map alone.
 
-    They cover a square round the goal; inf where the disc does not fit, or no way leads within it.
+    They cover a square round the goal, whose low corner is at (``row``, ``column``) of the planning map;
+    inf where the disc does not fit, or no way leads within the square.
     """
 
     lengths: npt.NDArray[np.float64]
-    first: tuple[int, int]
+    row: int
+    column: int
 
 
 def ways_to(
@@ -39,16 +41,16 @@ def ways_to(
     row, column = frame.to_grid(*goal)
     inflation, half = radius / frame.resolution, WAIT_WITHIN / frame.resolution
     reach = math.ceil(half) + math.ceil(inflation) + 1
-    first = max(int(row) - reach, 0), max(int(column) - reach, 0)
-    box = np.s_[first[0] : int(row) + reach + 1, first[1] : int(column) + reach + 1]
+    low, left = max(int(row) - reach, 0), max(int(column) - reach, 0)
+    box = np.s_[low : int(row) + reach + 1, left : int(column) + reach + 1]
     closed = inflate(planning_map.prior[box] & ~planning_map.cleared[box], inflation)
     rows, columns = np.nonzero(~closed)
-    away = np.hypot(rows + first[0] + 0.5 - row, columns + first[1] + 0.5 - column)
+    away = np.hypot(rows + low + 0.5 - row, columns + left + 0.5 - column)
     if away.min(initial=np.inf) > max(tolerance / frame.resolution, 1.0):
         return None
     nearest = int(away.argmin())
     lengths = SearchGrid(closed).flood((int(rows[nearest]), int(columns[nearest])))
-    return WaysToGoal(lengths * frame.resolution, first)
+    return WaysToGoal(lengths * frame.resolution, low, left)
 
 
 def waiting_place(ways: WaysToGoal, planners: Sequence[GridPlanner], start: Point) -> Point | None:
@@ -57,24 +59,24 @@ def waiting_place(ways: WaysToGoal, planners: Sequence[GridPlanner], start: Poin
     Of all places about as near to the goal as any it is the one nearest to the start. None if there
     is none within ``WAIT_WITHIN``. Raises GoalObstructed if the start is about as near itself.
     """
-    lengths, first = ways
-    frame = planners[0].grid.frame
-    start_row, start_column = np.array(frame.to_grid(*start)) - first
-    here = np.inf
-    if 0 <= start_row < lengths.shape[0] and 0 <= start_column < lengths.shape[1]:
-        here = lengths[int(start_row), int(start_column)]
+    lengths, frame = ways.lengths, planners[0].grid.frame
+    height, width = lengths.shape
+    row, column = frame.to_grid(*start)
+    row, column = row - ways.row, column - ways.column
+    is_within = 0 <= row < height and 0 <= column < width
+    here = lengths[int(row), int(column)] if is_within else np.inf
     for planner in planners:
         try:
             reached = planner.reached_from(start)
         except (StartOccupied, NoPath):
             continue
-        box = reached[first[0] :, first[1] :][: lengths.shape[0], : lengths.shape[1]]
+        box = reached[ways.row : ways.row + height, ways.column : ways.column + width]
         within = np.where(box, lengths, np.inf)
         if within.min() > WAIT_WITHIN:
             continue
         if here - within.min() <= NEARER:
             raise GoalObstructed("an obstacle occupies the goal")
         rows, columns = np.nonzero(within <= within.min() + 0.5 * NEARER)
-        at = np.hypot(rows + 0.5 - start_row, columns + 0.5 - start_column).argmin()
-        return frame.to_world(first[0] + rows[at] + 0.5, first[1] + columns[at] + 0.5)
+        at = np.hypot(rows + 0.5 - row, columns + 0.5 - column).argmin()
+        return frame.to_world(ways.row + rows[at] + 0.5, ways.column + columns[at] + 0.5)
     return None

@@ -10,7 +10,7 @@ NEVER = -1e18
 FREE_FOR = 1.0  # s that a cell is seen free before its earlier hits are forgotten
 
 
-class Box:
+class HitBox:
     """The box of the hits in a cell, metres from the cell's centre."""
 
     low_x: np.float32
@@ -19,7 +19,7 @@ class Box:
     high_y: np.float32
 
 
-BOX = record(Box)
+BOX = record(HitBox)
 
 
 @njit(cache=True)

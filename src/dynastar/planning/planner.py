@@ -26,8 +26,9 @@ from dynastar.planning.explain import explained
 from dynastar.planning.inflated import InflatedGrid
 from dynastar.planning.plan_type import Plan, PlannerConfig
 from dynastar.planning.search import ALGORITHMS, Cell, Cells, SearchGrid, SearchResult
-from dynastar.planning.segments import first_contact, mask_bytes
+from dynastar.planning.segments import first_contact
 from dynastar.planning.smoothing import smooth, without_repeats
+from dynastar.planning.warming import warm_up
 
 Mask = npt.NDArray[np.bool_]
 Point = tuple[float, float]
@@ -280,15 +281,6 @@ def plan(
         return prepared.plan(start, goal, explored, tolerance=tolerance)
     except PlanningError as error:
         raise explained(error, grid, start, goal, radius, unknown) from None
-
-
-@functools.cache
-def warm_up() -> None:
-    """Compile or load the kernels, once in a process, so that it does not count as planning time."""
-    blocked = np.zeros((3, 3), dtype=bool)
-    SearchGrid(blocked).search((0, 0), (2, 2), "improved")
-    smooth(blocked, [[0.5, 0.5], [0.5, 2.5], [2.5, 2.5]], 0.0, 1.0)
-    first_contact(mask_bytes(blocked), np.ones((2, 2)), 0.5)
 
 
 @functools.cache

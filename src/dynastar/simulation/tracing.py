@@ -49,7 +49,7 @@ class Sensed:
         self._known: npt.NDArray[np.bool_] | None = None
 
     def changes(self, navigator: Any) -> npt.NDArray[np.int32]:
-        """Cells (m, 3) that have changed since the last call: row, column, whether blocked."""
+        """The cells changed since the last call (m, 3): row, column, and 1 if blocked, else 0."""
         planning_map = getattr(navigator, "planning_map", None)
         if planning_map is None:
             return np.empty((0, 3), np.int32)

@@ -183,9 +183,9 @@ class World:
         return mean
 
     def _look(self, twist: Twist, thoroughly: bool) -> None:
-        """Checks for contact: movers always, what stands once half the way to it may be used up.
+        """Check for contact: with moving obstacles always, with others after half the gap to them.
 
-        No point of the footprint has moved further than ``_travelled`` since the last check.
+        No point of the footprint has moved further than ``_travelled`` since the last check of those.
         """
         footprint = self._robot.footprint
         if thoroughly or self._travelled >= 0.5 * self._solid_gap:

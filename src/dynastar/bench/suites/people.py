@@ -21,7 +21,6 @@ reactive world a robot that only stops for people ahead gets through, and one th
 The time limit is 3 times the least time, of the robot's way at full speed, plus 60 s.
 """
 
-from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -29,7 +28,7 @@ import numpy as np
 
 from dynastar.bench import driven
 from dynastar.bench.bound import least_time
-from dynastar.bench.missions import Mission, Options
+from dynastar.bench.missions import Mission, Options, endless
 from dynastar.bench.robots import CROWD_ROBOT, MAPS_ROBOT
 from dynastar.bench.suites import people_crowd, people_scripts
 from dynastar.bench.suites.people_sites import SITES, Site, draw_site, heading_of
@@ -64,13 +63,7 @@ class Made(NamedTuple):
     crowd: tuple[Pedestrian, ...] = ()
 
 
-def missions(options: Options) -> Iterator[Mission]:
-    """Worlds without end; a world is its number and the suite's seed."""
-    del options
-    number = 0
-    while True:
-        yield Mission(number)
-        number += 1
+missions = endless
 
 
 def mode(number: int) -> str:

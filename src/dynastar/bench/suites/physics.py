@@ -9,7 +9,6 @@ and, on top, the time constant of the motors with that payload.
 """
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from typing import Any
@@ -19,7 +18,7 @@ import numpy as np
 from dynastar.bench import driven
 from dynastar.bench.bound import least_time
 from dynastar.bench.controllers import controller_named
-from dynastar.bench.missions import Mission, Options
+from dynastar.bench.missions import Mission, Options, endless
 from dynastar.bench.suites.physics_model import Body
 from dynastar.bench.suites.physics_world import PhysicsWorld
 from dynastar.bench.suites.random_worlds import verdict
@@ -55,7 +54,7 @@ PATIENCE, EXTRA_TIME = 4.0, 90.0  # times the least time, s
 
 @dataclass(frozen=True)
 class Made:
-    """A mission: robot, body, floor, whether the payload is on it, map by kind and seed, world."""
+    """A mission: robot, its body, friction of the floor, with payload or not, map and world."""
 
     robot: Robot
     body: Body
@@ -65,13 +64,7 @@ class Made:
     world: RobotWorld
 
 
-def missions(options: Options) -> Iterator[Mission]:
-    """Missions without end; a mission is its number and the suite's seed."""
-    del options
-    number = 0
-    while True:
-        yield Mission(number)
-        number += 1
+missions = endless
 
 
 def leave_out(mission: Mission, options: Options) -> str:

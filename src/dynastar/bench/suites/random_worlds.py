@@ -25,7 +25,7 @@ exists) at full speed, plus 60 s.
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -33,7 +33,7 @@ import numpy as np
 
 from dynastar.bench import driven
 from dynastar.bench.bound import least_time
-from dynastar.bench.missions import Mission, Options
+from dynastar.bench.missions import Mission, Options, endless
 from dynastar.bench.suites.random_kinds import KINDS
 from dynastar.bench.suites.random_layout import StaticWorld
 from dynastar.bench.suites.random_truth import TrueSpace
@@ -68,13 +68,7 @@ class Made(NamedTuple):
     length: float
 
 
-def missions(options: Options) -> Iterator[Mission]:
-    """Worlds without end; a world is its number and the suite's seed."""
-    del options
-    number = 0
-    while True:
-        yield Mission(number)
-        number += 1
+missions = endless
 
 
 def leave_out(mission: Mission, options: Options) -> str:

@@ -10,7 +10,7 @@ Numbers for which the rules find no mission are left out. The time limit is 4 ti
 the way on the map, plus 90 s. ``--ideal`` gives the same missions to perfect hardware.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -19,7 +19,7 @@ import numpy as np
 
 from dynastar.bench import driven
 from dynastar.bench.bound import least_time
-from dynastar.bench.missions import Mission, Options
+from dynastar.bench.missions import Mission, Options, endless
 from dynastar.bench.suites.random_worlds import verdict
 from dynastar.bench.suites.robots_hardware import Hardware, as_declared, draw_hardware
 from dynastar.bench.suites.robots_sold import SOLD
@@ -53,13 +53,7 @@ class Made(NamedTuple):
     hardware: Hardware
 
 
-def missions(options: Options) -> Iterator[Mission]:
-    """Missions without end; a mission is its number and the suite's seed."""
-    del options
-    number = 0
-    while True:
-        yield Mission(number)
-        number += 1
+missions = endless
 
 
 def leave_out(mission: Mission, options: Options) -> str:
