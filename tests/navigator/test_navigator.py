@@ -286,6 +286,23 @@ def test_who_waits_for_a_path_steps_aside_for_who_comes():
     assert min(gaps) > 0.0
 
 
+@pytest.mark.parametrize(("speed", "ends"), [(0.0, "blocked"), (0.2, "arrived")])
+def test_unseen_space_is_backed_into_as_the_last_resort(speed, ends):
+    """A Jackal, whose lidar does not see what is behind it, faces a dead end as narrow as itself."""
+    walls = [(3.6, 3.3, 5.0, 3.4), (3.6, 2.6, 5.0, 2.7), (5.0, 2.6, 5.1, 3.4)]
+    start, true = (4.5, 3.0, 0.0), room(8.0, 6.0, *walls)
+    drive = Drive(room(), ROBOTS["jackal"], start, true=true, unseen_speed=speed)
+    drive.navigator.set_goal(Goal(7.0, 3.0))
+    fastest = 0.0
+    while drive.status.state not in ("arrived", "blocked"):
+        drive.tick()
+        if drive.navigator.sensing.trusts_map:
+            fastest = max(fastest, abs(drive.twist.v))
+        assert drive.now < 120.0
+    assert drive.status.state == ends
+    assert fastest <= speed + 1e-9
+
+
 def test_cells_are_halved_where_sensed_cells_leave_no_way():
     drive = Drive(room(), true=room(8.0, 6.0, (4.0, 0.0, 4.2, 6.0)))
     drive.navigator.set_goal(Goal(6.5, 3.0))

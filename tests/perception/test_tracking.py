@@ -8,6 +8,7 @@ from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.perception.detection import Known
 from dynastar.perception.local_map import SEEN_OCCUPIED, LocalMap
 from dynastar.perception.placed_scan import placed
+from dynastar.perception.planning_map import PlanningMap
 from dynastar.perception.tracking import Tracker
 from dynastar.robot import ROBOTS, Lidar
 from dynastar.simulation.lidar import LidarSimulator
@@ -218,6 +219,24 @@ def test_nothing_at_rest_is_confirmed_though_the_robot_turns(omega):
     watcher = Watcher(ROBOTS["jackal"].lidar, polygons=boxes)
     watcher.watch(lambda t: [(3.0, 1.8, 0.3)], 4.0, lambda t: Pose2D(0.1 * t, 0.0, omega * t))
     assert not watcher.ever
+
+
+def test_a_dead_end_round_the_sensor_is_no_track():
+    """Its walls are one group, narrower than the widest moving obstacle, that fits a disc here."""
+    walls = [(-0.4, 0.32, 0.6, 0.42), (-0.4, -0.42, 0.6, -0.32), (0.6, -0.42, 0.7, 0.42)]
+    polygons = [np.array([(a, b), (c, b), (c, d), (a, d)]) for a, b, c, d in walls]
+    watcher = Watcher(ROBOTS["jackal"].lidar, polygons=polygons)
+    for k in range(30):
+        pose = Pose2D(0.3 - 0.01 * k, 0.0, -0.02 * max(k - 15, 0))
+        watcher.look(0.05 * k, [], pose)
+        assert not watcher.tracker.tracks
+
+
+def test_the_rim_of_the_map_is_no_track():
+    watcher = Watcher(known=PlanningMap(OPEN).known)
+    for k in range(60):
+        watcher.look(0.05 * k, [], Pose2D(19.0 - 0.02 * k, 16.0 + 0.03 * k, 0.01 * k))
+        assert not watcher.tracker.tracks
 
 
 def test_an_obstacle_that_comes_into_view_at_rest_is_no_track():

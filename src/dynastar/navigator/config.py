@@ -38,6 +38,9 @@ class NavigatorConfig(NamedTuple):
         float,
         Field("speed of a person who steps out of unseen space; 0: nobody does", "m/s", 0.0, 20.0),
     ] = 0.5
+    unseen_speed: Annotated[
+        float, Field("speed of the last resort, into unseen space; 0: never", "m/s", 0.0, 2.0)
+    ] = 0.0
     reverse: Annotated[bool, Field("reverse where needed and possible")] = True
     scan_age: Annotated[
         float, Field("largest age of a scan or state before the robot brakes", "s", 0.05, 5.0)

@@ -91,7 +91,7 @@ class Driving:
             margin_to_closed=kept_margin(closed, self.window.rules.body, margin, at),
             latency=config.latency,
             last=self._last,
-            v_cap=self._speed_cap(pose, guide, planning_map),
+            v_cap=min(self._speed_cap(pose, guide, planning_map), view.speed),
             path_weight=GIVEN_PATH_WEIGHT if target.is_given else 0.0,
         )
 

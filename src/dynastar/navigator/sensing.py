@@ -34,13 +34,14 @@ class View(NamedTuple):
     """What is known of the surroundings in one tick.
 
     ``closed`` is what is not observed free, ``distance_to_obstacle`` is to what is occupied by
-    sensing or on the map.
+    sensing or on the map, ``speed`` (m/s) is the highest that the view is good for.
     """
 
     closed: Closed
     distance_to_obstacle: Field
     hidden: Hidden
     moving: Prediction
+    speed: float
 
 
 class Sensing:
@@ -52,6 +53,7 @@ class Sensing:
         self.tracker = Tracker(config.tracker)
         self.poses, self._feed = PoseHistory(robot.limits, config), ScanFeed(robot, config)
         self._at_start = True  # until the first scan
+        self.trusts_map = False  # whether unseen space that is free on the map is open
 
     def set_map(self, planning_map: PlanningMap) -> None:
         """Another map; the local map is moved onto its cells."""
@@ -92,13 +94,15 @@ class Sensing:
             self._add(scan)
         if not self._at_start:
             self.local_map.keep_free((x, y, self._own_radius), now)
-        if self._at_start or jumped:  # wherever that is, the robot stands there
+        if self._at_start or jumped or self.trusts_map:  # wherever that is, the robot stands there
             radius = self._own_radius if self._at_start else self.robot.footprint.inscribed
             mapped = self._under(self.planning_map.grid.occupied, outside=True)
             self.local_map.assume_free((x, y, radius), now, mapped)
         self._at_start = self._at_start and self._feed.newest == -math.inf
         self.planning_map.place_robot(x, y, self.robot.footprint.circumscribed)
-        self.local_map.update(now, self._under(self.planning_map.barred, outside=False))
+        barred = self._under(self.planning_map.barred, outside=False)
+        trusted = ~self._under(self.planning_map.prior, outside=True) if self.trusts_map else None
+        self.local_map.update(now, barred, trusted)
         return fault
 
     def _under(self, mask: Mask, outside: bool) -> Mask:
@@ -116,13 +120,17 @@ class Sensing:
         occupied = self.planning_map.occupied_under(local)
         seen = local.free_at >= now - SEEN_NOW
         obstacles = lower_bounds((~occupied).view(np.uint8), resolution)
+        hidden = self._hidden.update((local.row0, local.column0), seen, occupied, now)
+        if self.trusts_map:
+            hidden = hidden._replace(speed=0.0)  # nobody is where it drives
         return View(
             closed=Closed(
                 Field(local.field, x0, y0, resolution), local.states == SEEN_OCCUPIED, local.boxes
             ),
             distance_to_obstacle=Field(obstacles, x0, y0, resolution),
-            hidden=self._hidden.update((local.row0, local.column0), seen, occupied, now),
+            hidden=hidden,
             moving=predict(self._moving(now, moving), self.config.prediction, times),
+            speed=self.config.unseen_speed if self.trusts_map else math.inf,
         )
 
     def is_moving_at(self, place: Goal, moving: Sequence[MovingObstacle] | None) -> bool:

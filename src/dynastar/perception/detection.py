@@ -106,9 +106,11 @@ def find_owners(points, sensor, known, space, tracks):
         column = math.floor((cos * dx + sin * dy) / frame.resolution)
         dx, dy = point.x - sensor.x, point.y - sensor.y
         point.range, point.owner = math.hypot(dx, dy), UNOWNED
-        if 0 <= row < rows and 0 <= column < columns and known.mask[row, column]:
-            point.owner = MAPPED
-            continue
+        if -1 <= row <= rows and -1 <= column <= columns:  # the rim counts as an obstacle
+            row, column = min(max(row, 0), rows - 1), min(max(column, 0), columns - 1)
+            if known.mask[row, column]:
+                point.owner = MAPPED
+                continue
         behind = BEHIND / max(point.range, 1e-9)
         point.free = seen_free(point.x + behind * dx, point.y + behind * dy, space)
         nearest = 1.0  # squared distance over squared reach
@@ -176,9 +178,11 @@ def describe(group, points, sensor, tracks, widest):
     """Fill in a group from its first and last index. Returns True if it may be a moving obstacle.
 
     On a wide surface it may be only where space was seen free: an obstacle can move close to a wall.
+    What is seen over half a turn or more surrounds the sensor, like a dead end.
     """
     first, after = points[group.start], points[group.stop % len(points)]
-    if first.owner == MAPPED or (first.wide and not first.free):
+    spanned = (points[group.stop - 1].beam - first.beam) % sensor.beams * abs(sensor.step)
+    if first.owner == MAPPED or (first.wide and not first.free) or spanned >= math.pi:
         return False
     group.owner = first.owner
     behind_before, behind_after = first.jump >= -0.5 * GAP, after.jump <= 0.5 * GAP

@@ -13,8 +13,10 @@ from dynastar.perception.placed_scan import PlacedScan
 
 Disc = tuple[float, float, float]  # x, y, radius, m
 Indices = npt.NDArray[np.int64]
+Mask = npt.NDArray[np.bool_]
 
 UNSEEN, SEEN_FREE, SEEN_OCCUPIED = 0, 1, 2
+INSIDE = np.s_[1:-1, 1:-1]  # without the rim, which is closed
 SAME = 1e-3  # cells, by which lattices may be apart that count as one
 ROUNDED = 1e-6  # relative error of a resolution that was a float32, as in ROS messages
 
@@ -105,7 +107,7 @@ class LocalMap:
         self.boxes = picked(self.boxes, rows, columns, whole_cell(a))
         self.row0, self.column0 = self.row0 + up, self.column0 + right
 
-    def assume_free(self, disc: Disc, now: float, mapped: npt.NDArray[np.bool_]) -> None:
+    def assume_free(self, disc: Disc, now: float, mapped: Mask) -> None:
         """Take a disc round the robot as free, but for hits and the cells ``mapped`` (n, n)."""
         x, y, radius = disc
         x0, y0 = self.origin
@@ -118,7 +120,7 @@ class LocalMap:
         """Keep the free cells in a disc round the robot from being forgotten."""
         kernels.keep_free(self.free_at, self.hit_at, self.frame, disc, now)
 
-    def see(self, scan: PlacedScan, moving: npt.NDArray[np.bool_]) -> None:
+    def see(self, scan: PlacedScan, moving: Mask) -> None:
         """Mark what a scan shows; ``moving`` (k,) are the points not to be marked as hits."""
         sensor, frame, now = scan.sensor, self.frame, scan.sensor.stamp
         beams, pose = (sensor.angle_min, sensor.step), (sensor.x, sensor.y, sensor.theta)
@@ -130,13 +132,16 @@ class LocalMap:
         """Forgets the hits in a disc: what was there has turned out to move."""
         kernels.mark_disc(self.hit_at, self.frame, (x, y, radius), kernels.NEVER)
 
-    def update(self, now: float, barred: npt.NDArray[np.bool_]) -> None:
+    def update(self, now: float, barred: Mask, trusted: Mask | None = None) -> None:
         """Brings ``states``, ``open`` and ``field`` (metres between cell centres) up to date.
 
-        ``barred`` (n, n) are keep-out cells, which are not open though they may be free.
+        ``barred`` (n, n) are keep-out cells, which are not open though they may be free. ``trusted``
+        (n, n) are open while unseen.
         """
         horizon = now - self.config.memory
         kernels.compose_states(self.free_at, self.hit_at, barred, horizon, self.states, self.open)
+        if trusted is not None:
+            self.open[INSIDE] |= (trusted & (self.states == UNSEEN))[INSIDE]
         self.field = lower_bounds(self.open, self.resolution)  # the rim is closed
 
 
