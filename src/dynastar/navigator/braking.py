@@ -71,7 +71,7 @@ class Commands:
 
     def __init__(self, limits: Limits, period: float, latency: float) -> None:
         self.limits, self.period, self.latency = limits, period, latency
-        self.check = DriveCheck(period)
+        self.check = DriveCheck(limits, period, latency)
         self._sent: list[tuple[float, Twist]] = []
         self._last = REST
         self._stop = StopProfile(REST, limits)

@@ -3,8 +3,10 @@
 import math
 
 from dynastar.geometry import Pose2D, Twist, wrap_angle
+from dynastar.navigator.latency_check import LatencyCheck
 from dynastar.navigator.pose_history import PoseHistory
 from dynastar.navigator.status import RobotState
+from dynastar.robot import Limits
 
 PATIENCE = 3.0  # s of commands that move nothing
 MOVED, TURNED = 0.02, 0.03  # m and rad by which the robot has moved
@@ -16,14 +18,16 @@ FASTER, FARTHER = 1.3, 0.2  # times the way by the odometry, and m, that poses m
 class DriveCheck:
     """Compares commands, one every ``period`` (s), with what the robot's poses and twists show."""
 
-    def __init__(self, period: float) -> None:
-        self._period = period  # as declared
+    def __init__(self, limits: Limits, period: float, latency: float) -> None:
+        self._period, self._latency = period, latency  # as declared
+        self._acting = LatencyCheck(limits, latency)
         self._at: Pose2D | None = None  # where the robot was when it moved last
         self._since = self._now = math.nan
         self._asked = self._asked_turn = 0.0  # m and rad since then
 
     def note(self, state: RobotState, command: Twist) -> None:
         """Take in a command given in a state."""
+        self._acting.note(state, command)
         x, y, theta = state.pose
         moved = self._at is None or math.dist((x, y), self._at[:2]) > MOVED
         if moved or self._at is None or abs(wrap_angle(theta - self._at.theta)) > TURNED:
@@ -38,6 +42,11 @@ class DriveCheck:
         found, declared = [], self._period
         if poses.period > LATE * declared:
             found.append(f"commands come {poses.period:.2f} s apart, not {declared:.2f} s")
+        if self._acting.longer is not None:
+            found.append(
+                f"commands act after about {self._acting.longer:.2f} s, not {self._latency:.2f} s: "
+                "declare latency"
+            )
         asked = abs(self._asked) > ASKED or abs(self._asked_turn) > ASKED_TURN
         if asked and self._now - self._since > PATIENCE:
             found.append(
