@@ -85,6 +85,53 @@ def test_what_is_late_or_ahead_brakes_it(bridge, after, says):
     assert tick.command.v < 0.2
 
 
+def tilted(message, degrees):
+    half = math.radians(degrees) / 2
+    message.pose.pose.orientation = make(
+        "geometry_msgs/msg/Quaternion", x=math.sin(half), w=math.cos(half)
+    )
+    return message
+
+
+def test_tilted_odometry_drives_or_is_the_reason_for_braking(bridge):
+    bridge.take("goal_pose", a_goal(4.0, 2.5))
+    assert bridge.take("odom", tilted(odometry(0.05), 4.9)) == ""
+    bridge.take("scan", a_scan(0.05))
+    assert bridge.tick(0.05).command.v > 0.0
+    says = "the odometry is tilted by 8.0 degrees: expected at most 5"
+    assert bridge.take("odom", tilted(odometry(0.5), 8.0)) == says
+    bridge.take("scan", a_scan(0.5))
+    tick = bridge.tick(0.5)
+    assert (tick.state, tick.reason) == ("sensor_lost", says)
+    assert "odometry" not in feed(bridge, 0.6).reason
+
+
+def test_what_is_missing_because_it_was_refused_says_why():
+    own = NodeSettings(pose_source="amcl")
+    bridge = Bridge(own, ROBOTS["turtlebot3_burger"], configured("default"))
+    bridge.take("map", make_short())
+    assert "values: expected" in bridge.tick(0.0).reason
+    bridge.take("map", a_map())
+    bridge.take("odom", tilted(odometry(0.0), 9.0))
+    assert "odometry is tilted by 9.0" in bridge.tick(0.0).reason
+    bridge.take("odom", odometry(0.0))
+    lidar = OUT.transforms([("base_link", "laser", START)], 0.0)
+    lidar.transforms[0].transform.rotation = tilted(odometry(0.0), 20.0).pose.pose.orientation
+    bridge.take("/tf_static", lidar)
+    bridge.take("scan", a_scan(0.0))
+    assert "frame 'laser', seen from 'base_link', is tilted by 20.0" in bridge.tick(0.0).reason
+    lidar.transforms[0].transform.rotation = odometry(0.0).pose.pose.orientation
+    bridge.take("/tf_static", lidar)
+    bridge.take("scan", a_scan(0.0))
+    assert bridge.tick(0.0).reason == "the pose in the map is not known yet"
+    pose = tilted(odometry(0.0), 30.0).pose
+    header = OUT.header("map", 0.0)
+    bridge.take(
+        "amcl_pose", make("geometry_msgs/msg/PoseWithCovarianceStamped", header=header, pose=pose)
+    )
+    assert "the pose in the map is tilted by 30.0" in bridge.tick(0.0).reason
+
+
 def test_goals_that_cannot_be_leave_the_one_under_way(bridge):
     bridge.take("goal_pose", a_goal(4.0, 2.5))
     for goal, says in (

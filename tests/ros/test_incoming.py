@@ -24,6 +24,44 @@ def test_headings(heading):
     assert incoming.yaw_of(rotation_of(make, heading)) == pytest.approx(heading, abs=1e-9)
 
 
+def rotated(roll, pitch, yaw):
+    """A quaternion of a roll about x, then a pitch about y, then a yaw about z, by products."""
+
+    def about(axis, angle):
+        w, v = math.cos(angle / 2), np.zeros(3)
+        v[axis] = math.sin(angle / 2)
+        return w, v
+
+    w, v = about(2, yaw)
+    for axis, angle in ((1, pitch), (0, roll)):
+        other_w, other_v = about(axis, angle)
+        w, v = w * other_w - v @ other_v, w * other_v + other_w * v + np.cross(v, other_v)
+    return make("geometry_msgs/msg/Quaternion", x=v[0], y=v[1], z=v[2], w=w)
+
+
+@given(st.floats(-3.1, 3.1), st.floats(-1.0, 1.0), st.floats(0.0, 5.0))
+def test_poses_that_are_tilted_by_up_to_5_degrees_are_used_by_their_yaw(yaw, share, tilt):
+    pitch = math.radians(tilt) * share
+    roll = math.acos(min(math.cos(math.radians(tilt)) / math.cos(pitch), 1.0))
+    assert incoming.yaw_of(rotated(roll, pitch, yaw)) == pytest.approx(yaw, abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("roll", "pitch", "says"),
+    [
+        (5.2, 0.0, "odometry is tilted by 5.2 degrees: expected at most 5"),
+        (4.0, -4.0, "odometry is tilted by 5.7 degrees"),
+        (0.0, 90.0, "tilted by 90.0 degrees"),
+        (180.0, 0.0, "tilted by 180.0 degrees"),
+    ],
+)
+def test_poses_that_are_tilted_more_say_by_how_much(roll, pitch, says):
+    pose = OUT.pose(Pose2D(1.0, 2.0, 0.0))
+    pose.orientation = rotated(math.radians(roll), math.radians(pitch), 0.7)
+    with pytest.raises(InputError, match=says):
+        incoming.pose_of(pose, "the odometry")
+
+
 @given(st.integers(0, 2**31 - 2), st.integers(0, 999_999_999))
 def test_stamps(seconds, nanoseconds):
     back = incoming.seconds(OUT.stamp(seconds + 1e-9 * nanoseconds))
@@ -52,6 +90,10 @@ def test_maps_and_scans():
         (lambda m: setattr(m.info, "resolution", 0.0), "resolution"),
         (lambda m: setattr(m.info.origin.orientation, "x", 0.7), "quaternion|tilted"),
         (lambda m: setattr(m.info.origin.position, "x", math.nan), "finite"),
+        (
+            lambda m: setattr(m.info.origin, "orientation", rotated(0.0, 0.2, 1.0)),
+            "origin is tilted by 11.5 degrees: expected at most 5",
+        ),
     ],
 )
 def test_maps_that_are_none(change, says):

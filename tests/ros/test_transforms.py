@@ -70,10 +70,25 @@ def test_a_lidar_that_hangs_upside_down_sees_the_same_points():
     assert directions == pytest.approx([0.9, 0.4, -0.1])  # y of the sensor points right
 
 
+@pytest.mark.parametrize("turn", [0.0, math.pi])
+def test_frames_that_are_tilted_by_up_to_5_degrees_are_used(turn):
+    found = Transforms()
+    for tilt in (-5.0, 4.0):
+        found.add(turned("base", "laser", turn + math.radians(tilt), yaw=0.4, x=0.2), static=True)
+        mount = found.planar("base", "laser")
+        assert mount.pose == pytest.approx((0.2, 0.0, 0.4))
+        assert mount.upside_down == (turn > 0.0)
+    found.add(turned("base", "laser", turn + math.radians(5.2)), static=True)
+    with pytest.raises(InputError, match=r"tilted by 5\.2 degrees"):
+        found.planar("base", "laser")
+
+
 def test_what_cannot_be():
     found = Transforms()
     found.add(turned("base", "tilted", 0.5), static=True)
-    with pytest.raises(InputError, match="tilted against 'base'"):
+    with pytest.raises(
+        InputError, match=r"from 'base', is tilted by 28\.6 degrees: expected at most 5"
+    ):
         found.planar("base", "tilted")
     bad = OUT.transforms([("base", "bad", Pose2D(math.nan, 0.0, 0.0))], 0.0)
     with pytest.raises(InputError, match="not finite"):

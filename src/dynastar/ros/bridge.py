@@ -77,6 +77,7 @@ class Bridge:
         self.localization = Localization(settings.pose_source)
         self.transforms = Transforms()
         self.refused = ""  # what was refused last, and why
+        self._refusals: dict[str, str] = {}  # by topic, why its newest message was refused
         self.fault = ""  # what else keeps it from driving, as a clock that stands still
         self._odometry_frame = ""
         self._layers: dict[str, OccupancyGrid] = {}  # the newest map and masks
@@ -103,7 +104,9 @@ class Bridge:
                 self.transforms.add(message, static=topic.endswith("static"))
         except DynastarError as error:
             self.refused = f"the goal is refused: {error}" if topic == "goal_pose" else str(error)
+            self._refusals[topic] = self.refused
             return self.refused
+        self._refusals.pop(topic, None)
         return ""
 
     def _take_layer(self, topic: str, message: Any) -> None:
@@ -142,14 +145,15 @@ class Bridge:
         self._odometry_frame = message.header.frame_id.lstrip("/")
         self.localization.add_odometry(
             seconds(message.header.stamp),
-            pose_of(message.pose.pose),
+            pose_of(message.pose.pose, "the odometry"),
             twist_of(message.twist.twist),
         )
 
     def _take_pose(self, message: Any) -> None:
         if self.settings.pose_source == "amcl":
             check_frame("the pose", message.header.frame_id, self.settings.global_frame)
-            self.localization.add_pose(seconds(message.header.stamp), pose_of(message.pose.pose))
+            pose = pose_of(message.pose.pose, "the pose in the map")
+            self.localization.add_pose(seconds(message.header.stamp), pose)
 
     # -- what is asked for ------------------------------------------------------------------------
 
@@ -208,6 +212,7 @@ class Bridge:
         self.localization.reset()
         self.transforms.clear()
         self._scan, self.refused = None, reason
+        self._refusals.clear()
         if self.grid is not None:
             self.navigator = Navigator(self.grid, self.robot, self.config)
 
@@ -221,7 +226,7 @@ class Bridge:
     def tick(self, now: float) -> Tick:
         """The command at ``now`` (s); braking, with the reason, where data are missing or late."""
         if self.navigator is None:
-            reason = self.fault or self.refused or "no map has come yet"
+            reason = self.fault or self._refusals.get("map", "no map has come yet")
             return Tick(Twist(0.0, 0.0), "idle", reason)
         state, trouble = self._state(now)
         scan = None if self._taken else self._scan
@@ -232,19 +237,25 @@ class Bridge:
 
     def _state(self, now: float) -> tuple[RobotState, str]:
         """The state now, and what is wrong with odometry, scan or pose: then a state that stops."""
-        stamp, age = self.localization.stamp, self.settings.data_age
         scan = self._scan
-        trouble = self.fault or _late("odometry", stamp, now, age)
-        trouble = trouble or _late("scan", -math.inf if scan is None else scan.stamp, now, age)
+        trouble = self.fault or self._late("odometry", "odom", self.localization.stamp, now)
+        scanned = -math.inf if scan is None else scan.stamp
+        trouble = trouble or self._late("scan", "scan", scanned, now)
         trouble = trouble or self._follow_tf(now)
         at = now if scan is None or scan.stamp - now > JUMP else max(now, scan.stamp)
         state = self.localization.at(at)
         if state is None:
-            trouble = trouble or "the pose in the map is not known yet"
+            unknown = "the pose in the map is not known yet"
+            trouble = trouble or self._refusals.get("amcl_pose", unknown)
         if trouble or state is None:
             twist = Twist(0.0, 0.0) if state is None else state.twist
             return RobotState(at, NOWHERE, twist), trouble
         return state, ""
+
+    def _late(self, what: str, topic: str, stamp: float, now: float) -> str:
+        """Describe what is wrong with the stamp of data, or why newer data were refused, or ""."""
+        late = _late(what, stamp, now, self.settings.data_age)
+        return self._refusals.get(topic, late) if late else ""
 
     def _follow_tf(self, now: float) -> str:
         """Takes the pose of the odometry's frame in the map from tf; what is wrong, or ""."""

@@ -12,10 +12,8 @@ from dynastar.errors import InputError
 from dynastar.geometry import Goal, Pose2D, Twist, wrap_angle
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.io.files import MAX_CELLS
-from dynastar.ros.transforms import Mount
+from dynastar.ros.transforms import Mount, check_level
 from dynastar.scan import LaserScan
-
-UPRIGHT = 0.02  # rad, largest roll or pitch of a planar pose
 
 
 def seconds(stamp: Any) -> float:
@@ -23,25 +21,24 @@ def seconds(stamp: Any) -> float:
     return float(stamp.sec) + 1e-9 * float(stamp.nanosec)
 
 
-def yaw_of(rotation: Any) -> float:
-    """The heading of a rotation about z, rad; InputError for another or none."""
+def yaw_of(rotation: Any, what: str = "an orientation") -> float:
+    """The yaw of a rotation, rad; InputError where it is tilted too far, or is none."""
     x, y, z, w = rotation.x, rotation.y, rotation.z, rotation.w
     norm = math.sqrt(x * x + y * y + z * z + w * w)
     if not 0.9 < norm < 1.1:  # NaN is neither
         raise InputError(
-            f"an orientation is ({x:g}, {y:g}, {z:g}, {w:g}): expected a unit quaternion"
+            f"{what} has the orientation ({x:g}, {y:g}, {z:g}, {w:g}): expected a unit quaternion"
         )
-    if 2.0 * math.hypot(x, y) > UPRIGHT * norm:
-        raise InputError("an orientation is tilted: expected a rotation about z alone")
-    return wrap_angle(2.0 * math.atan2(z, w))
+    check_level(what, 1.0 - 2.0 * (x * x + y * y) / (norm * norm))
+    return wrap_angle(math.atan2(2.0 * (x * y + w * z), w * w + x * x - y * y - z * z))
 
 
-def pose_of(pose: Any) -> Pose2D:
-    """A geometry_msgs/Pose in the plane; InputError where it is not finite or tilted."""
+def pose_of(pose: Any, what: str = "a pose") -> Pose2D:
+    """A geometry_msgs/Pose in the plane; InputError where it is not finite or tilted too far."""
     x, y = float(pose.position.x), float(pose.position.y)
     if not (math.isfinite(x) and math.isfinite(y)):
-        raise InputError(f"a position is ({x:g}, {y:g}): expected finite numbers")
-    return Pose2D(x, y, yaw_of(pose.orientation))
+        raise InputError(f"{what} has the position ({x:g}, {y:g}): expected finite numbers")
+    return Pose2D(x, y, yaw_of(pose.orientation, what))
 
 
 def twist_of(twist: Any) -> Twist:
@@ -52,7 +49,7 @@ def twist_of(twist: Any) -> Twist:
 def goal_of(message: Any, frame: str) -> Goal:
     """The goal in a PoseStamped of ``frame``; InputError for another frame or a pose that is none."""
     check_frame("a goal", message.header.frame_id, frame)
-    return Goal(*pose_of(message.pose))
+    return Goal(*pose_of(message.pose, "its pose"))
 
 
 def check_frame(what: str, given: str, expected: str) -> None:
@@ -71,7 +68,7 @@ def grid_of(message: Any, frame: str) -> OccupancyGrid:
     if len(message.data) != rows * columns:
         raise InputError(f"the map has {len(message.data)} values: expected {columns} x {rows}")
     values = np.frombuffer(message.data, dtype=np.int8).reshape(rows, columns)
-    pose = pose_of(info.origin)
+    pose = pose_of(info.origin, "the map's origin")
     return OccupancyGrid(values, GridFrame(float(info.resolution), *pose))
 
 

@@ -30,6 +30,7 @@ OF_THE_ROBOT = (
     "period", "latency", "range_error", "pose_error", "heading_error", "goal_tolerance",
     "heading_tolerance", "unknown",
 )  # fmt: skip
+MOST_REFUSALS = 3  # shown in the summary
 SAME = 1e-6  # m/s and rad/s up to which two commands are the same
 
 
@@ -60,8 +61,14 @@ class Replay:
             "ticks as recorded": int((off <= SAME).all(axis=1).sum()) if known.any() else None,
             "largest difference in v [m/s]": float(off[:, 0].max()) if known.any() else None,
             "largest difference in omega [rad/s]": float(off[:, 1].max()) if known.any() else None,
-            "refused": "; ".join(self.refused) or None,
+            "refused": self._words(),
         }
+
+    def _words(self) -> str | None:
+        """The first messages that were refused, and how many more there are."""
+        more = len(self.refused) - MOST_REFUSALS
+        words = "; ".join(self.refused[:MOST_REFUSALS])
+        return (f"{words}; and {more} more" if more > 0 else words) or None
 
 
 def _mean(values: npt.NDArray[np.float64]) -> float:

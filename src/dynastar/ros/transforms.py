@@ -9,7 +9,7 @@ import numpy.typing as npt
 from dynastar.errors import InputError
 from dynastar.geometry import Pose2D
 
-TILT = 0.05  # rad, between a plane and one that is taken for it
+MOST_TILT = 5.0  # degrees between two planes, or of a pose, that count as level
 LONGEST = 50  # frames in a chain
 
 Matrix = npt.NDArray[np.float64]
@@ -64,10 +64,16 @@ class Transforms:
         else:
             raise InputError(f"the transforms above the frame '{child:.80}' form a loop")
         up = found[2, 2]
-        if abs(up) < math.cos(TILT):
-            raise InputError(f"the frame '{child:.80}' is tilted against '{parent:.80}'")
+        check_level(f"the frame '{child:.80}', seen from '{parent:.80}',", abs(float(up)))
         pose = Pose2D(float(found[0, 3]), float(found[1, 3]), math.atan2(found[1, 0], found[0, 0]))
         return Mount(pose, bool(up < 0.0))
+
+
+def check_level(what: str, up: float) -> None:
+    """Raises InputError for a tilt of more than MOST_TILT; ``up`` is the cosine of the tilt."""
+    tilt = math.degrees(math.acos(min(max(up, -1.0), 1.0)))
+    if tilt > MOST_TILT + 1e-6:  # the rounding of messages
+        raise InputError(f"{what} is tilted by {tilt:.1f} degrees: expected at most {MOST_TILT:g}")
 
 
 def _matrix(transform: Any, child: str) -> Matrix:
