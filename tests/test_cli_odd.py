@@ -138,3 +138,17 @@ def test_outputs_are_written_through_links(folder: Path) -> None:
     assert main(["schema", "--out", "link.json"]) == 0
     assert (folder / "link.json").is_symlink()
     assert "$schema" in json.loads((folder / "real.json").read_text())
+
+
+def test_a_warning_is_one_line_and_the_command_goes_on(
+    capsys: pytest.CaptureFixture[str], folder: Path
+) -> None:
+    header = (folder / "map.yaml").read_text().replace(300 * "n", "grey.pgm")
+    (folder / "grey.yaml").write_text(header)
+    (folder / "grey.pgm").write_bytes(b"P5 40 40 255\n" + 800 * b"\xfe" + 800 * b"\xcd")
+    status, out, err = run(capsys, "info", "grey.yaml")
+    assert (status, "100.0 %" in out) == (0, True)
+    assert err.startswith(
+        "dynastar: warning: grey.yaml: free_thresh 0.25 makes the grey of unknown"
+    )
+    assert err.count("\n") == 1

@@ -33,6 +33,7 @@ _WHERE = {
     "World": "simulation",
     "warm_up": "simulation",
     "DynastarError": "errors",
+    "DynastarWarning": "errors",
     "InputError": "errors",
     "PlanningError": "errors",
     "load_episode": "io",
@@ -49,6 +50,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:  # what _WHERE has, for type checkers
     from dynastar.episode import Episode as Episode
     from dynastar.errors import DynastarError as DynastarError
+    from dynastar.errors import DynastarWarning as DynastarWarning
     from dynastar.errors import InputError as InputError
     from dynastar.errors import PlanningError as PlanningError
     from dynastar.geometry import Goal as Goal

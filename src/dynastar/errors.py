@@ -29,6 +29,10 @@ class DataError(InputError):
     """A benchmark's data set is not where it should be, or not what it should be."""
 
 
+class DynastarWarning(UserWarning):
+    """Something was used, but perhaps not as it was meant; the message says what and where."""
+
+
 class MissingPackage(DynastarError, ImportError):  # noqa: N818
     """A package is needed that dynastar does not install unless asked for one of its extras."""
 

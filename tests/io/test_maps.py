@@ -9,9 +9,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from dynastar.errors import MapError
+from dynastar.errors import DynastarWarning, MapError
 from dynastar.grid import GridFrame, OccupancyGrid
-from dynastar.io import load_map, save_map
+from dynastar.io import load_map, load_ros_map, save_map
+from dynastar.io.maps import map_files
 
 GRID = OccupancyGrid.from_text("#.?\n...")
 
@@ -70,6 +71,52 @@ def test_an_image_needs_its_own_yaml_beside_it(tmp_path):
     (tmp_path / "b.yaml").write_bytes((tmp_path / "a.yaml").read_bytes())
     with pytest.raises(MapError, match=r"another image, a\.pgm"):
         load_map(tmp_path / "b.pgm")
+
+
+@pytest.mark.parametrize("load", [load_map, load_ros_map])
+def test_an_image_stands_for_the_yaml_that_names_it(tmp_path, load):
+    save_map(GRID, tmp_path / "a.pgm")
+    (tmp_path / "a.yaml").rename(tmp_path / "home.yaml")
+    (tmp_path / "goals.yaml").write_text("dock: [1.0, 2.0]\n")
+    assert (load(tmp_path / "a.pgm").values == GRID.values).all()
+    (tmp_path / "a.yaml").write_text(
+        (tmp_path / "home.yaml").read_text().replace("a.pgm", "old.pgm")
+    )
+    assert (load(tmp_path / "a.pgm").values == GRID.values).all()
+    (tmp_path / "other.yml").write_bytes((tmp_path / "home.yaml").read_bytes())
+    with pytest.raises(MapError, match=r"several files .*: home\.yaml, other\.yml"):
+        load(tmp_path / "a.pgm")
+
+
+@pytest.mark.parametrize("name", ["a.jpg", "a"])
+def test_other_names_of_a_map_hint_at_its_yaml(tmp_path, name):
+    save_map(GRID, tmp_path / "a.yaml")
+    with pytest.raises(MapError, match=r"there is .*a\.yaml beside it"):
+        load_map(tmp_path / name)
+
+
+def test_a_folder_of_maps_is_read_without_what_is_no_map(tmp_path):
+    others = {
+        "goals.yaml": "dock: [1.0, 2.0]\n",
+        "graph.yaml": "- {from: 0, to: 1}\n",
+        "broken.yaml": "a: [1\n",
+    }
+    for name, text in others.items():
+        (tmp_path / name).write_text(text)
+    with pytest.raises(MapError, match=r"no map .*broken\.yaml: .*goals\.yaml: the key 'image'"):
+        map_files(tmp_path)
+    for name in ("b.yaml", "a.yaml"):
+        save_map(GRID, tmp_path / name)
+    (tmp_path / "c.yaml").write_text("image: c.pgm\n")  # a map, though a broken one
+    with pytest.warns(DynastarWarning) as told:
+        found = map_files(tmp_path)
+    assert [path.name for path in found] == ["a.yaml", "b.yaml", "c.yaml"]
+    assert len(told) == len(others)
+    assert all(name in str(said.message) for name, said in zip(sorted(others), told, strict=True))
+    with pytest.raises(MapError, match="this is a folder") as error:
+        load_map(tmp_path)
+    assert "a.yaml" in str(error.value)
+    assert "broken.yaml" not in str(error.value)
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from PIL import Image
 
-from dynastar.errors import MapError
+from dynastar.errors import DynastarWarning, MapError
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.io import load_ros_map, save_ros_map
 
@@ -113,6 +113,30 @@ def test_numbers_without_a_point_before_the_exponent_are_numbers(tmp_path):
     path = write(tmp_path, HEADER)
     path.write_text(path.read_text().replace("0.05", "5e-2").replace("- 2.0", "- -1e-05"))
     assert load_ros_map(path).frame == GridFrame(0.05, -1.0, -1e-05, 0.5)
+
+
+@pytest.mark.parametrize("image", ["map.pgm", "map.png"])
+@pytest.mark.parametrize("negate", [0, 1])
+def test_a_free_thresh_that_makes_the_unknown_free_is_told(tmp_path, image, negate):
+    pixels = np.full((50, 50), 254, np.uint8)
+    pixels[:10], pixels[20] = 205, 0
+    pixels = 255 - pixels if negate else pixels
+    header = HEADER | {"image": image, "negate": negate, "free_thresh": 0.25}
+    path = write(tmp_path, header, pixels)
+    says = r"map\.yaml: free_thresh 0\.25 makes .* unknown cells \((205|50)\) free, 20 % .* 0\.196"
+    with pytest.warns(DynastarWarning, match=says):
+        assert not (load_ros_map(path).values < 0).any()
+    usual = write(tmp_path, header | {"free_thresh": 0.196}, pixels)
+    assert (load_ros_map(usual).values < 0).sum() == 500
+
+
+@pytest.mark.parametrize(
+    ("change", "rows"), [({"mode": "raw"}, 40), ({"mode": "scale"}, 40), ({}, 0)]
+)
+def test_a_free_thresh_that_changes_nothing_is_not_told(tmp_path, change, rows):
+    pixels = np.full((50, 50), 254, np.uint8)
+    pixels[:rows], pixels[45, :20] = 205, 205
+    load_ros_map(write(tmp_path, HEADER | {"free_thresh": 0.25} | change, pixels))
 
 
 def any_grid(low: int = -1) -> st.SearchStrategy:
@@ -277,6 +301,7 @@ def test_a_png_whose_header_lies_about_its_size_is_refused(tmp_path, size):
         load_ros_map(path)
 
 
+@pytest.mark.filterwarnings("ignore:.*free_thresh:dynastar.errors.DynastarWarning")
 @pytest.mark.parametrize("name", ["map.yaml", "map.pgm", "map.png"])
 def test_no_truncation_and_no_flipped_byte_gives_anything_but_a_map_or_a_map_error(tmp_path, name):
     header = HEADER | {"image": "map.png" if name == "map.png" else "map.pgm"}
@@ -307,6 +332,7 @@ def test_no_truncation_and_no_flipped_byte_gives_anything_but_a_map_or_a_map_err
 
 
 @pytest.mark.data
+@pytest.mark.filterwarnings("ignore:.*free_thresh:dynastar.errors.DynastarWarning")
 @pytest.mark.parametrize(
     ("name", "shape", "occupied", "unknown"),
     [
@@ -331,6 +357,7 @@ def test_real_maps_load_and_load_back_after_saving(
 
 
 @pytest.mark.data
+@pytest.mark.filterwarnings("ignore:.*free_thresh:dynastar.errors.DynastarWarning")
 def test_every_node_of_the_depot_graph_is_free(data_dir):
     import json
 

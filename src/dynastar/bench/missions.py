@@ -8,6 +8,7 @@ from typing import Any, NamedTuple, Protocol
 
 from dynastar.bench.workers import Workers
 from dynastar.errors import DataError
+from dynastar.io.paths import local_path
 
 
 class Mission(NamedTuple):
@@ -82,7 +83,8 @@ def data_folder(options: Options, suite: str, holds: str, folder: str = "") -> P
     if not named:
         raise DataError(f"the suite {suite} reads data: give --data DIR or set DYNASTAR_DATA")
     below = folder or suite
-    for place in (Path(named) / below, Path(named)):
+    given = local_path(named, DataError)
+    for place in (given / below, given):
         if any(place.glob(holds)):
             return place
     raise DataError(

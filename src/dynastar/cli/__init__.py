@@ -9,12 +9,14 @@ input, with one line on stderr.
 
 import os
 import sys
-from collections.abc import Iterable, Sequence
+import warnings
+from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
+from typing import Any
 
 from dynastar import __version__
 from dynastar.cli.parsing import OneLineParser
-from dynastar.errors import DynastarError, InputError
+from dynastar.errors import DynastarError, DynastarWarning, InputError
 
 COMMANDS = {
     "plan": "find a path on a map",
@@ -51,8 +53,15 @@ BROKEN_PIPE = 141
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Runs a command and returns its exit status; errors of dynastar's end here, in one line."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("default", DynastarWarning)
+        warnings.showwarning = _show(warnings.showwarning)
+        return _run(list(sys.argv[1:] if argv is None else argv))
+
+
+def _run(words: list[str]) -> int:
+    """Carries out a command and returns its exit status."""
     try:
-        words = list(sys.argv[1:] if argv is None else argv)
         cut = words.index(ROS) if ROS in words and words[0] in TAKE_ROS else len(words)
         arguments = build_parser(words).parse_args(words[:cut])
         arguments.ros_args = words[cut:]
@@ -88,6 +97,17 @@ def build_parser(names: Iterable[str] = COMMANDS) -> OneLineParser:
             added.set_defaults(execute=command.execute)
             command.add_arguments(added)
     return parser
+
+
+def _show(others: Callable[..., None]) -> Callable[..., None]:
+    """A way to show warnings: dynastar's in one line on stderr, those of others as before."""
+
+    def show(message: Warning | str, category: type[Warning], *where: Any) -> None:
+        if not issubclass(category, DynastarWarning):
+            return others(message, category, *where)
+        _say(f"warning: {message}", 0)
+
+    return show
 
 
 def _say(message: str, status: int) -> int:

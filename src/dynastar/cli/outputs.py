@@ -4,13 +4,14 @@ import os
 from pathlib import Path
 
 from dynastar.errors import InputError
+from dynastar.io.paths import local_path
 
 
 def check_file(option: str, name: str | Path | None) -> Path | None:
     """The file to write, None for none or "-"; InputError if it cannot be written."""
     if name is None or str(name) == "-":
         return None
-    file = Path(name)
+    file = local_path(name)
     try:
         folder = (file.resolve() if file.is_symlink() else file.absolute()).parent
         known = file.exists()

@@ -62,10 +62,10 @@ def _unknown(word: str, options: "Iterable[str]") -> str:
 
 
 def path(text: str) -> "Path":
-    """A file or folder."""
-    from pathlib import Path
+    """A file or folder: a path, which may start with ``~``, or a ``file://`` URL."""
+    from dynastar.io.paths import local_path
 
-    return Path(text)
+    return local_path(text)
 
 
 def number(text: str) -> float:

@@ -18,6 +18,7 @@ from dynastar.episode import Episode, EventRecord, PlanRecord, Trace
 from dynastar.errors import EpisodeError, MapError
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.io.files import read_bytes, written_aside
+from dynastar.io.paths import local_path
 from dynastar.path import Trajectory
 
 VERSION = 1
@@ -68,7 +69,7 @@ _KNOWN = {*_SHAPES, *_MASKS, *_TRACE}
 
 def save_episode(episode: Episode, path: str | Path) -> None:
     """Writes an episode; by custom the suffix is ``.npz``. Raises EpisodeError if it cannot."""
-    path = Path(path)
+    path = local_path(path, EpisodeError)
     header = {
         "format": "dynastar episode",
         "version": VERSION,
@@ -98,7 +99,7 @@ def save_episode(episode: Episode, path: str | Path) -> None:
 
 def load_episode(path: str | Path) -> Episode:
     """The episode in a file; EpisodeError if it is damaged, none, or of another version."""
-    path = Path(path)
+    path = local_path(path, EpisodeError)
     data = read_bytes(path, MAX_EPISODE_BYTES, EpisodeError)
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from dynastar.errors import InputError, MapError
+from dynastar.io.paths import local_path
 
 MAX_CELLS = 16384 * 16384  # of a map, 268 million; checked before anything is decoded
 MAX_BYTES = 4 * MAX_CELLS  # of a map's image
@@ -55,7 +56,7 @@ def written_aside(path: str | Path, error: type[InputError] = InputError) -> Ite
     On any exception it is deleted instead. Folders that are missing are made. Raises ``error``
     where the system refuses.
     """
-    path = Path(path)
+    path = local_path(path, error)
     try:
         path = path.resolve() if path.is_symlink() else path
         if path.exists() and not path.is_file():

@@ -1,5 +1,6 @@
 """Maps by file name: what the suffix says decides how a file is read and written."""
 
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
@@ -7,12 +8,13 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.errors import MapError
+from dynastar.errors import DynastarWarning, MapError
 from dynastar.grid import FREE, MOST_DRAWN, OCCUPIED, UNKNOWN, OccupancyGrid
 from dynastar.io.files import MAX_BYTES, MAX_TEXT_BYTES, check_size, read_bytes, written_aside
 from dynastar.io.movingai import check_plain, load_movingai_map, save_movingai_map
 from dynastar.io.npy import read_npy
-from dynastar.io.ros_map import load_ros_map, read_header, save_ros_map
+from dynastar.io.paths import local_path
+from dynastar.io.ros_map import load_ros_map, not_a_map, save_ros_map
 
 T = TypeVar("T")
 
@@ -20,14 +22,14 @@ T = TypeVar("T")
 def load_map(path: str | Path) -> OccupancyGrid:
     """The map in a file: ROS (``.yaml``), MovingAI (``.map``), NumPy (``.npy``), drawn (``.txt``).
 
-    An image (``.pgm``, ``.png``) is read by way of the YAML file of the same name beside it. An
+    An image (``.pgm``, ``.png``) is read by way of the YAML file beside it that names it. An
     array is bool or int8, [rows, columns], row 0 at the lowest y. Arrays, ``.map`` and ``.txt``
     have cells of 1 m and their corner at (0, 0). Raises MapError.
     """
-    path = Path(path)
+    path = local_path(path, MapError)
     if path.is_dir():
         raise MapError(f"{path}: this is a folder, expected a map's file{_maps_in(path)}")
-    return _choose(_LOADERS, path)(path)
+    return _choose(_LOADERS, path, _yaml_beside(path))(path)
 
 
 def save_map(grid: OccupancyGrid, path: str | Path) -> None:
@@ -36,28 +38,42 @@ def save_map(grid: OccupancyGrid, path: str | Path) -> None:
     An image's name writes the YAML file beside it, too. Raises MapError where the form cannot hold
     the grid, or the file cannot be written.
     """
-    path = Path(path)
+    path = local_path(path, MapError)
     _choose(_SAVERS, path)(grid, path)
+
+
+def map_files(folder: Path) -> list[Path]:
+    """The ROS maps (``*.yaml``) of a folder by name; MapError if there are none.
+
+    Warns of each YAML file that is no map, such as named goals or a route graph.
+    """
+    found: list[Path] = []
+    others: list[str] = []
+    for path in sorted(folder.glob("*.yaml")):
+        why = not_a_map(path)
+        if why:
+            others.append(why)
+        else:
+            found.append(path)
+    if not found:
+        whys = "".join(f"; {why}" for why in others[:3])
+        raise MapError(f"{folder}: there is no map (*.yaml) in this folder{whys}")
+    for why in others:
+        warnings.warn(f"left out, as it is no map: {why}", DynastarWarning, stacklevel=2)
+    return found
 
 
 def _maps_in(folder: Path) -> str:
     """The maps of a folder, for a message."""
-    names = sorted(name for name in folder.iterdir() if name.suffix.lower() in _LOADERS)
-    listed = [str(name) for name in names if name.suffix.lower() not in (".png", ".pgm", ".npy")]
+    names = sorted(name for name in folder.iterdir() if name.suffix.lower() in _LISTED)
+    listed = [str(name) for name in names if name.suffix not in _YAML or not not_a_map(name)]
     return f", as {', '.join(listed[:3])}" if listed else ""
 
 
-def _load_image(path: Path) -> OccupancyGrid:
-    for suffix in (".yaml", ".yml"):
-        table = path.with_suffix(suffix)
-        if table.is_file():
-            named = table.parent / read_header(table).image
-            if named.resolve() != path.resolve():
-                raise MapError(f"{path}: {table.name} beside it is for another image, {named.name}")
-            return load_ros_map(table)
-    raise MapError(
-        f"{path}: an image alone has no resolution, expected {path.stem}.yaml beside it (ROS map)"
-    )
+def _yaml_beside(path: Path) -> str:
+    """The YAML file of the same name, for a message."""
+    tables = [path.parent / f"{path.stem}{suffix}" for suffix in _YAML]
+    return "".join(f"; there is {table} beside it" for table in tables if table.is_file())
 
 
 def _load_array(path: Path) -> OccupancyGrid:
@@ -113,8 +129,8 @@ def _save_text(grid: OccupancyGrid, path: Path) -> None:
 _LOADERS: dict[str, Callable[[Path], OccupancyGrid]] = {
     ".yaml": load_ros_map,
     ".yml": load_ros_map,
-    ".pgm": _load_image,
-    ".png": _load_image,
+    ".pgm": load_ros_map,
+    ".png": load_ros_map,
     ".map": load_movingai_map,
     ".npy": _load_array,
     ".txt": _load_text,
@@ -130,10 +146,14 @@ _SAVERS: dict[str, Callable[[OccupancyGrid, Path], None]] = {
 }
 
 
-def _choose(table: dict[str, T], path: Path) -> T:
+_YAML = (".yaml", ".yml")
+_LISTED = (*_YAML, ".map", ".txt")  # in the hint for a folder
+
+
+def _choose(table: dict[str, T], path: Path, hint: str = "") -> T:
     suffix = path.suffix.lower()
     if suffix not in table:
         raise MapError(
-            f"{path}: '{path.suffix}' is no suffix of a map, expected {', '.join(table)}"
+            f"{path}: '{path.suffix}' is no suffix of a map, expected {', '.join(table)}{hint}"
         )
     return table[suffix]

@@ -15,6 +15,7 @@ from dynastar.config import Field, checked
 from dynastar.errors import ConfigError, MapError, OutOfMap
 from dynastar.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 from dynastar.io.files import MAX_BYTES, MAX_ROWS_BYTES, check_size, read_bytes, written_aside
+from dynastar.io.paths import local_path
 
 PASSABLE, BLOCKED = b".GS", b"@OTW"
 _HEADER = re.compile(
@@ -47,7 +48,7 @@ def load_movingai_map(path: str | Path) -> OccupancyGrid:
 
     Raises MapError if the file is malformed or is not of the size that its header says.
     """
-    path = Path(path)
+    path = local_path(path, MapError)
     data = read_bytes(path, MAX_BYTES, MapError)
     header = _HEADER.match(data)
     if header is None or header[1] == header[3]:
@@ -77,7 +78,7 @@ def load_movingai_map(path: str | Path) -> OccupancyGrid:
 
 def save_movingai_map(grid: OccupancyGrid, path: str | Path) -> None:
     """Writes a grid of free and occupied cells, 1 m at the origin; MapError for any other."""
-    path = Path(path)
+    path = local_path(path, MapError)
     check_plain(grid, path)
     if not np.isin(grid.values, (FREE, OCCUPIED)).all():
         raise MapError(f"{path}: a .map holds free and occupied cells only, save as .yaml")
@@ -100,7 +101,7 @@ def check_plain(grid: OccupancyGrid, path: Path) -> None:
 
 def load_scenarios(path: str | Path) -> list[MovingAIScenario]:
     """The rows of a ``.scen`` file (version 1); raises MapError with the line that is wrong."""
-    path = Path(path)
+    path = local_path(path, MapError)
     try:
         lines = read_bytes(path, MAX_ROWS_BYTES, MapError).decode("utf-8").splitlines()
     except UnicodeDecodeError:

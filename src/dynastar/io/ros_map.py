@@ -9,6 +9,7 @@ occ = 1 - shade, or occ = shade with ``negate``. By mode:
 - raw: a pixel of 0 to 100 (of 255) is the value itself, any other is unknown.
 """
 
+import warnings
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
@@ -17,15 +18,20 @@ import numpy.typing as npt
 import yaml
 
 from dynastar.config import Field, checked, nearest
-from dynastar.errors import ConfigError, MapError
+from dynastar.errors import ConfigError, DynastarWarning, MapError
 from dynastar.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyGrid
 from dynastar.io.files import MAX_BYTES, MAX_HEADER_BYTES, read_bytes, written_aside
+from dynastar.io.paths import local_path
 from dynastar.io.pgm import read_pgm, write_pgm
 from dynastar.io.png import SIGNATURE, read_png, write_png
 from dynastar.io.yaml_table import read_yaml
 
 Mode = Literal["trinary", "scale", "raw"]
+_IMAGES = (".pgm", ".png")
+USUAL_FREE_THRESH = 0.196  # just below the share of the grey of unknown cells
+LEAST_UNKNOWN = 0.01  # share of the map from which cells of that grey are worth a warning
 _TRINARY = {FREE: 254, OCCUPIED: 0, UNKNOWN: 205}  # the greys that map_saver writes
+_UNKNOWN_SHARE = 1.0 - _TRINARY[UNKNOWN] / 255.0  # to which such a cell is occupied
 
 
 class MapHeader(NamedTuple):
@@ -45,15 +51,67 @@ class MapHeader(NamedTuple):
 def load_ros_map(yaml_path: str | Path) -> OccupancyGrid:
     """The map of a map_server YAML file and its image, which has at most MAX_CELLS pixels.
 
-    Raises MapError with the file's name if anything is missing, malformed, cut off or lying.
+    The name of an image stands for the YAML file beside it that names the image. Raises MapError
+    with the file's name if anything is missing, malformed, cut off or lying. Warns where
+    ``free_thresh`` makes the grey of unknown cells free.
     """
-    path = Path(yaml_path)
+    path = local_path(yaml_path, MapError)
+    if path.suffix.lower() in _IMAGES:
+        path = _yaml_of(path)
     header = read_header(path)
-    levels, full, opaque = _levels(path.parent / header.image, header.mode)
+    levels, full, opaque = _levels(_image_of(path, header), header.mode)
     values = _values_by_level(full, header)[levels]
+    _check_unknown(path, header, levels, full)
     if header.mode == "scale" and opaque is not None:
         values[~opaque] = UNKNOWN
     return OccupancyGrid(values[::-1], GridFrame(header.resolution, *header.origin))
+
+
+def not_a_map(path: Path) -> str:
+    """Why a YAML file is no map at all, as one of named goals is not, or ""."""
+    try:
+        table = read_yaml(read_bytes(path, MAX_HEADER_BYTES, MapError), path)
+    except MapError as error:
+        return str(error)
+    missing = [key for key in ("image", "resolution") if key not in table]
+    return f"{path}: the key '{missing[0]}' is missing" if len(missing) == 2 else ""
+
+
+def _image_of(path: Path, header: MapHeader) -> Path:
+    """The image that a YAML file names."""
+    return path.parent / local_path(header.image, MapError)
+
+
+def _yaml_of(image: Path) -> Path:
+    """The YAML file beside an image that names it, at best of the same name; raises MapError."""
+    same = [image.with_suffix(suffix) for suffix in (".yaml", ".yml")]
+    same = [table for table in same if table.is_file()]
+    for table in same:
+        if _names(table, image):
+            return table
+    naming = [table for table in _other_tables(image, same) if _names(table, image)]
+    if len(naming) == 1:
+        return naming[0]
+    if naming:
+        names = ", ".join(table.name for table in naming[:3])
+        raise MapError(f"{image}: several files are for this image, name one of them: {names}")
+    if same:
+        named = _image_of(same[0], read_header(same[0])).name
+        raise MapError(f"{image}: {same[0].name} beside it is for another image, {named}")
+    raise MapError(
+        f"{image}: an image alone has no resolution, expected {image.stem}.yaml beside it (ROS map)"
+    )
+
+
+def _other_tables(image: Path, same: list[Path]) -> list[Path]:
+    """The other YAML files in the folder of an image that can be maps."""
+    files = [*image.parent.glob("*.yaml"), *image.parent.glob("*.yml")]
+    return [table for table in sorted(files) if table not in same and not not_a_map(table)]
+
+
+def _names(table: Path, image: Path) -> bool:
+    """Whether a map's YAML file is for an image; raises MapError where it is broken."""
+    return _image_of(table, read_header(table)).resolve() == image.resolve()
 
 
 def read_header(path: Path) -> MapHeader:
@@ -93,7 +151,7 @@ def save_ros_map(
     unknown cells in an alpha channel, so those need ``png``. Both files are complete before either
     gets its name. Masks are no part of a ROS map: a grid that has any is refused. Raises MapError.
     """
-    path = Path(yaml_path)
+    path = local_path(yaml_path, MapError)
     if grid.keepout is not None or grid.speed_limit is not None:
         raise MapError(
             f"{path}: a ROS map cannot hold keepout or speed_limit, save it without them"
@@ -106,7 +164,7 @@ def save_ros_map(
             f"{path}: unknown cells in mode 'scale' need image 'png', or take mode 'raw'"
         )
     image_path = path.with_suffix(f".{image}")
-    thresholds = (1.0, 0.0) if mode == "scale" else (0.65, 0.196)
+    thresholds = (1.0, 0.0) if mode == "scale" else (0.65, USUAL_FREE_THRESH)
     origin = tuple(float(number) for number in grid.frame[1:])
     values = (image_path.name, float(grid.resolution), origin, 0, *thresholds, mode)
     try:
@@ -141,13 +199,37 @@ def _levels(
     return levels, 255 * colours, opaque
 
 
+def _check_unknown(
+    path: Path, header: MapHeader, levels: npt.NDArray[np.unsignedinteger], full: int
+) -> None:
+    """Warns where ``free_thresh`` makes the grey free that map_saver writes for unknown cells."""
+    if header.mode != "trinary" or header.free_thresh <= _UNKNOWN_SHARE:
+        return
+    occ = _occupancy(full, header)
+    grey = np.abs(occ - _UNKNOWN_SHARE) < 0.5 / 255.0
+    share = np.count_nonzero((grey & (occ < header.free_thresh))[levels]) / levels.size
+    if share >= LEAST_UNKNOWN:
+        level = 255 - _TRINARY[UNKNOWN] if header.negate else _TRINARY[UNKNOWN]
+        words = (
+            f"{path}: free_thresh {header.free_thresh:g} makes the grey of unknown cells "
+            f"({level}) free, {100.0 * share:.3g} % of the map: the robot may plan through "
+            f"what nobody has seen. With the usual free_thresh, {USUAL_FREE_THRESH}, they are unknown"
+        )
+        warnings.warn(words, DynastarWarning, stacklevel=3)
+
+
+def _occupancy(full: int, header: MapHeader) -> npt.NDArray[np.float64]:
+    """Share to which a cell is occupied for each brightness from 0 to ``full``."""
+    shade = np.arange(full + 1) / full
+    return shade if header.negate else 1.0 - shade
+
+
 def _values_by_level(full: int, header: MapHeader) -> npt.NDArray[np.int8]:
     """Occupancy for each brightness from 0 to ``full``, int8 [full + 1]."""
-    shade = np.arange(full + 1) / full
     if header.mode == "raw":
-        raw = np.floor(255.0 * shade + 0.5)
+        raw = np.floor(255.0 * np.arange(full + 1) / full + 0.5)
         return np.where(raw <= 100, raw, UNKNOWN).astype(np.int8)
-    occ = shade if header.negate else 1.0 - shade
+    occ = _occupancy(full, header)
     between: Any = UNKNOWN
     if header.mode == "scale":
         span = header.occupied_thresh - header.free_thresh

@@ -19,6 +19,7 @@ from dynastar.geometry import Goal
 from dynastar.grid import OccupancyGrid
 from dynastar.io.files import MAX_TABLE_BYTES, read_bytes
 from dynastar.io.maps import load_map
+from dynastar.io.paths import local_path
 from dynastar.io.scenario_tables import MapTable, PlaceTable, RobotTable, ScenarioTable
 from dynastar.io.scenario_things import contains, read_mover, read_obstacle
 from dynastar.masks import SpeedScale, with_keepout, with_speed_limits
@@ -41,7 +42,7 @@ def load_scenario(path: str | Path) -> Scenario:
     A map's name is relative to the file, and may start with ``${DYNASTAR_DATA}``. Raises
     ScenarioError, led by the file's name, for whatever is missing, misspelt or contradictory.
     """
-    path = Path(path)
+    path = local_path(path, ScenarioError)
     data = read_bytes(path, MAX_TABLE_BYTES, ScenarioError)
     try:
         text = data.decode("utf-8")
@@ -129,7 +130,7 @@ def _rows(value: Any, where: str) -> list[tuple[str, Any]]:
 
 def _map(value: Any, folder: Path, where: str) -> OccupancyGrid:
     if isinstance(value, str):
-        return load_map(folder / _expanded(value, where))
+        return load_map(folder / local_path(_expanded(value, where), MapError))
     if not isinstance(value, Mapping):
         raise ConfigError(f"'{where}' is {shown(value)}: expected a file's name or a table")
     table = checked(MapTable, value, where)

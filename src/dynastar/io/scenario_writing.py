@@ -13,6 +13,7 @@ from dynastar.extras import require
 from dynastar.grid import OccupancyGrid
 from dynastar.io.files import written_aside
 from dynastar.io.maps import save_map
+from dynastar.io.paths import local_path
 from dynastar.robot import ROBOTS, Robot
 from dynastar.simulation.imperfections import PERFECT
 from dynastar.simulation.scenario import Mover, Scenario
@@ -33,7 +34,7 @@ def save_scenario(scenario: Scenario, folder: str | Path) -> Path:
     if scenario.crowd or scenario.faults:
         what = "pedestrians who react" if scenario.crowd else "faults"
         raise ScenarioError(f"a scenario file cannot have {what}")
-    folder = Path(folder)
+    folder = local_path(folder, ScenarioError)
     table = _table(scenario, folder)
     with written_aside(folder / FILE, ScenarioError) as aside:
         aside.write_text(tomli_w.dumps(table), encoding="utf-8")

@@ -12,6 +12,7 @@ import numpy as np
 
 from dynastar.errors import DataError
 from dynastar.extras import require
+from dynastar.io.paths import local_path
 
 
 @cache
@@ -63,7 +64,7 @@ class BagWriter:
         _types()
         from rosbags.rosbag2 import StoragePlugin, Writer
 
-        self.folder = Path(folder).absolute()
+        self.folder = local_path(folder, DataError).absolute()
         if self.folder.exists():
             raise DataError(f"{folder} exists: a recording needs a new folder")
         self.folder.parent.mkdir(parents=True, exist_ok=True)
@@ -126,7 +127,7 @@ class BagReader:
     """A recording: a folder in rosbag2's form, or an .mcap file alone. DataError where it is none."""
 
     def __init__(self, path: Path) -> None:
-        self.path, self._store = Path(path), _types()
+        self.path, self._store = local_path(path, DataError), _types()
         from rosbags.highlevel import AnyReader
 
         if not self.path.exists():

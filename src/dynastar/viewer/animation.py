@@ -14,6 +14,7 @@ from tqdm import tqdm
 from dynastar.episode import Episode
 from dynastar.errors import InputError
 from dynastar.io.files import written_aside
+from dynastar.io.paths import local_path
 from dynastar.metrics import measure
 from dynastar.viewer import palette, scene
 from dynastar.viewer.canvas import FINE, Canvas, letters_font
@@ -64,7 +65,7 @@ def animate_episode(
     bar on stderr. Raises InputError for a suffix other than .gif and for an
     episode without a tick.
     """
-    path = Path(path)
+    path = local_path(path)
     if path.suffix.lower() != ".gif":
         raise InputError(f"{path}: an animation's name has to end in .gif")
     if len(episode.trajectory.times) == 0:

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from dynastar.errors import InputError
 from dynastar.io.files import written_aside
+from dynastar.io.paths import local_path
 from dynastar.viewer import palette
 
 FORMATS = (".png", ".svg", ".pdf")
@@ -71,7 +72,7 @@ def save(figure: Figure, path: str | Path, dpi: int = PRINT_DPI) -> Path:
 
     The suffix of ``path`` (.png, .svg, .pdf) says the format; InputError for another.
     """
-    path = Path(path)
+    path = local_path(path)
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
         raise InputError(f"{path}: a picture's name has to end in {', '.join(FORMATS)}")

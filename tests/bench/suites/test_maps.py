@@ -13,7 +13,7 @@ from dynastar.bench.robots import MAPS_ROBOT
 from dynastar.bench.selection import choose_missions
 from dynastar.bench.suites import maps
 from dynastar.bench.suites.map_worlds import MapWorld, draw_world
-from dynastar.errors import DataError
+from dynastar.errors import DataError, DynastarWarning
 from dynastar.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyGrid
 from dynastar.io.maps import save_map
 from dynastar.simulation import Scenario
@@ -112,10 +112,13 @@ def test_missions_take_the_maps_in_turn(tmp_path: Path) -> None:
     folder.mkdir()
     save_map(hall(), folder / "hall.yaml")
     save_map(OccupancyGrid(np.zeros((40, 40), np.int8), GridFrame(0.1)), folder / "small.yaml")
+    (folder / "goals.yaml").write_text("dock: [1.0, 2.0]\n")
     options = Options(data=tmp_path, missions=2)
-    assert [m.spec for m in islice(maps.missions(options), 3)] == [
-        "hall.yaml", "small.yaml", "hall.yaml",
-    ]  # fmt: skip
+    with pytest.warns(DynastarWarning, match=r"goals\.yaml: the key 'image' is missing"):
+        assert [m.spec for m in islice(maps.missions(options), 3)] == [
+            "hall.yaml", "small.yaml", "hall.yaml",
+        ]  # fmt: skip
+    (folder / "goals.yaml").unlink()
     chosen, skipped = choose_missions(maps, options)
     assert {mission.spec for mission in chosen} == {"hall.yaml"}
     assert skipped >= 1
@@ -131,6 +134,7 @@ def test_missions_take_the_maps_in_turn(tmp_path: Path) -> None:
 
 @pytest.mark.data
 @pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:.*free_thresh:dynastar.errors.DynastarWarning")
 def test_missions_on_real_maps_keep_the_rules(data_dir: Path) -> None:
     options = Options(data=data_dir, missions=6)
     for mission in choose_missions(maps, options)[0]:

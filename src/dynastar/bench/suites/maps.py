@@ -1,9 +1,10 @@
 """Suite maps: missions on ROS maps, seeded and numbered from 0 without end.
 
-Mission number n is on map n mod k of the k ``*.yaml`` in the folder, in the order of their names. A
-TurtleBot3 Burger at 0.5 m/s knows the map, but neither the boxes that stand near its way nor the two
-people who walk there. See ``map_worlds`` for the rules by which a mission is drawn; a number for which
-the rules find none is left out, and so is every number of a map too small for them.
+Mission number n is on map n mod k of the k maps (``*.yaml``) in the folder, in the order of their
+names; a YAML file that is no map, such as named goals, is left out. A TurtleBot3 Burger at 0.5 m/s
+knows the map, but neither the boxes that stand near its way nor the two people who walk there. See
+``map_worlds`` for the rules by which a mission is drawn; a number for which the rules find none is left
+out, and so is every number of a map too small for them.
 """
 
 from collections.abc import Iterator
@@ -18,7 +19,7 @@ from dynastar.bench.suites.map_worlds import MapWorld, draw_world
 from dynastar.errors import DataError
 from dynastar.geometry import Goal
 from dynastar.grid import OccupancyGrid
-from dynastar.io.maps import load_map
+from dynastar.io.maps import load_map, map_files
 from dynastar.simulation import Scenario
 
 DEFAULT_MISSIONS = 100
@@ -33,7 +34,7 @@ PATIENCE, EXTRA_TIME = 3.0, 60.0  # time limit = 3 x path length / v_max + 60 s
 
 def missions(options: Options) -> Iterator[Mission]:
     """Missions on the maps in turn; ``spec`` is the map's file name."""
-    names = [path.name for path in sorted(_folder(options).glob("*.yaml"))]
+    names = [path.name for path in map_files(_folder(options))]
     for number in range(MOST):
         yield Mission(number, names[number % len(names)])
 

@@ -17,6 +17,7 @@ import numpy as np
 from dynastar.bench import driven
 from dynastar.bench.missions import Mission, Options
 from dynastar.errors import DataError
+from dynastar.io.paths import local_path
 from dynastar.io.scenario_file import load_scenario
 from dynastar.simulation import Mover, Noise, Scenario
 
@@ -67,7 +68,8 @@ def office_file(options: Options) -> Path:
     named = options.data or os.environ.get("DYNASTAR_DATA")
     places = [EXAMPLES / FILE, Path("examples") / FILE]
     if named:
-        places = [Path(named) / FILE.name, Path(named) / FILE, *places]
+        given = local_path(named, DataError)
+        places = [given / FILE.name, given / FILE, *places]
     for place in places:
         if place.is_file():
             return place

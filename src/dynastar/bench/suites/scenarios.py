@@ -12,6 +12,7 @@ from typing import Any
 from dynastar.bench import driven
 from dynastar.bench.missions import Mission, Options
 from dynastar.errors import DataError
+from dynastar.io.paths import local_path
 from dynastar.io.scenario_file import load_scenario
 from dynastar.simulation import Scenario
 
@@ -54,7 +55,8 @@ def _folder(options: Options) -> Path:
         raise DataError(
             "the suite scenarios reads scenario files: give the folder that holds them as --data DIR"
         )
-    for folder in (Path(named) / "scenarios", Path(named)):
+    given = local_path(named, DataError)
+    for folder in (given / "scenarios", given):
         if next(folder.rglob("*.toml"), None) is not None:
             return folder
     raise DataError(f"{named} holds no scenario file (.toml), nor does {named}/scenarios")
