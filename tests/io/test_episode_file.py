@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynastar.episode import Episode
-from dynastar.errors import EpisodeError, InputError
+from dynastar.episode import Episode, Trace
+from dynastar.errors import DynastarWarning, EpisodeError, InputError
 from dynastar.geometry import Pose2D
 from dynastar.io import load_episode, save_episode, write_json, written_aside
 from episodes import episode
@@ -48,14 +48,65 @@ def test_the_same_episode_gives_the_same_bytes(tmp_path):
     assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
 
 
+def traced() -> Episode:
+    """An episode with a trace, three candidates and a track at each tick."""
+    rng, n = np.random.default_rng(1), 5
+    trace = Trace(
+        candidates=rng.random((3 * n, 3)),
+        refused=np.zeros(3 * n, np.uint8),
+        candidate_rows=np.full(n, 3),
+        terms=rng.random((n, 5)),
+        chosen=rng.random((n, 3)),
+        tracks=rng.random((n, 5)),
+        track_rows=np.ones(n, np.int64),
+        reasons=np.full(n, "the path"),
+        seen=rng.random((40, 4)),
+        seen_frame=(0.1, 0.0, 0.0, 0.0),
+    )
+    return dataclasses.replace(episode(n), trace=trace)
+
+
+def test_an_episode_that_was_cut_off_is_read_as_far_as_it_goes(tmp_path):
+    path, before = tmp_path / "a.npz", traced()
+    save_episode(before, path)
+    assert same(load_episode(path), before)
+    with zipfile.ZipFile(path) as archive:
+        begin = {member.filename: member.header_offset for member in archive.infolist()}
+        index = archive.start_dir
+    plain = dataclasses.replace(before, trace=None)
+    unexplored = [plan._replace(explored=np.empty((0, 2), np.int32)) for plan in before.plans]
+    bare = dataclasses.replace(plain, plans=tuple(unexplored))
+    whole = path.read_bytes()
+    for cut, expected, says in (
+        (len(whole) - 1, before, "drive of 5 ticks is read, but not its index"),
+        (index, before, "but not its index"),
+        (begin["seen.npy"] + 9, plain, "but not what the navigator considered"),
+        (begin["candidates.npy"], plain, "but not what the navigator considered"),
+        (
+            begin["explored_rows.npy"] + 99,
+            bare,
+            "but not the cells that its plans looked at and what",
+        ),
+        (begin["explored.npy"], bare, "but not the cells"),
+    ):
+        path.write_bytes(whole[:cut])
+        with pytest.warns(DynastarWarning, match=rf"a\.npz was cut off .*{says}"):
+            assert same(load_episode(path), expected)
+    for name in ("values", "times", "commands", "movers"):
+        path.write_bytes(whole[: begin[f"{name}.npy"] + 9])
+        with pytest.raises(EpisodeError, match=rf"a\.npz: .*ends at '{name}', before the drive"):
+            load_episode(path)
+    path.write_bytes(whole[:200])
+    with pytest.raises(EpisodeError, match=r"a\.npz: damaged, or not an episode"):
+        load_episode(path)
+
+
+@pytest.mark.filterwarnings("ignore:.*cut off:dynastar.errors.DynastarWarning")
 def test_no_damage_gives_anything_but_an_episode_or_an_episode_error(tmp_path):
     path = tmp_path / "a.npz"
     save_episode(episode(), path)
     whole = path.read_bytes()
     for k in range(0, len(whole), 29):
-        path.write_bytes(whole[:k])
-        with pytest.raises(EpisodeError, match=r"a\.npz: "):
-            load_episode(path)
         path.write_bytes(whole[:k] + bytes([whole[k] ^ 0x55]) + whole[k + 1 :])
         try:
             assert isinstance(load_episode(path), Episode)

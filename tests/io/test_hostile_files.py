@@ -254,7 +254,7 @@ DATA = ["p.csv", "dynabarn.json", "scenarios.json", "worlds.tar.xz", "path_files
 OTHERS = ["s.toml", "s.scen", "e.npz", "r.json"]
 
 
-@pytest.mark.filterwarnings("ignore:.*free_thresh:dynastar.errors.DynastarWarning")
+@pytest.mark.filterwarnings("ignore::dynastar.errors.DynastarWarning")
 @pytest.mark.parametrize("name", [*MAPS, *DATA, *OTHERS])
 def test_of_any_damage_only_errors_of_input_come_out(name, tmp_path):
     (tmp_path / "path_files").mkdir()

@@ -54,7 +54,7 @@ BROKEN_PIPE = 141
 def main(argv: Sequence[str] | None = None) -> int:
     """Runs a command and returns its exit status; errors of dynastar's end here, in one line."""
     with warnings.catch_warnings():
-        warnings.simplefilter("default", DynastarWarning)
+        warnings.simplefilter("always", DynastarWarning)
         warnings.showwarning = _show(warnings.showwarning)
         return _run(list(sys.argv[1:] if argv is None else argv))
 
@@ -100,12 +100,15 @@ def build_parser(names: Iterable[str] = COMMANDS) -> OneLineParser:
 
 
 def _show(others: Callable[..., None]) -> Callable[..., None]:
-    """A way to show warnings: dynastar's in one line on stderr, those of others as before."""
+    """A way to show warnings: dynastar's once in one line on stderr, those of others as before."""
+    said = set()
 
     def show(message: Warning | str, category: type[Warning], *where: Any) -> None:
         if not issubclass(category, DynastarWarning):
             return others(message, category, *where)
-        _say(f"warning: {message}", 0)
+        if str(message) not in said:
+            said.add(str(message))
+            _say(f"warning: {message}", 0)
 
     return show
 

@@ -6,6 +6,7 @@ an array of ``Episode`` by name, lists of them flattened with the rows of each c
 
 import io
 import json
+import warnings
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -15,8 +16,9 @@ import numpy.typing as npt
 
 from dynastar.config import shown
 from dynastar.episode import Episode, EventRecord, PlanRecord, Trace
-from dynastar.errors import EpisodeError, MapError
+from dynastar.errors import DynastarWarning, EpisodeError, MapError
 from dynastar.grid import GridFrame, OccupancyGrid
+from dynastar.io.cut_archive import arrays_before_cut
 from dynastar.io.files import read_bytes, written_aside
 from dynastar.io.paths import local_path
 from dynastar.path import Trajectory
@@ -65,6 +67,11 @@ _TEXTS = ("states", "limits", "reasons")
 _OPTIONAL = ("limits", *_TRACE)  # was not recorded before
 _MASKS = ("keepout", "speed_limit")
 _KNOWN = {*_SHAPES, *_MASKS, *_TRACE}
+# Order in the file: the drive is before what is larger, so that a file that was cut off still has it.
+# What an episode may lack is before what it has, so that it is known what was lost.
+_EXPLORED = ("explored", "explored_rows")
+_DRIVE = [name for name in _SHAPES if name not in (*_EXPLORED, "limits")]
+_ORDER = ("header", *_MASKS, "limits", *_DRIVE, *_EXPLORED, *_TRACE)
 
 
 def save_episode(episode: Episode, path: str | Path) -> None:
@@ -93,30 +100,69 @@ def save_episode(episode: Episode, path: str | Path) -> None:
     except (TypeError, ValueError) as error:
         raise EpisodeError(f"{path}: the episode cannot be written: {error}") from None
     arrays = _arrays(episode) | {"header": np.frombuffer(packed, dtype=np.uint8)}
+    arrays = {name: arrays[name] for name in _ORDER if name in arrays}
     with written_aside(path, EpisodeError) as aside, aside.open("wb") as stream:
         np.savez_compressed(stream, allow_pickle=False, **arrays)
 
 
 def load_episode(path: str | Path) -> Episode:
-    """The episode in a file; EpisodeError if it is damaged, none, or of another version."""
+    """The episode in a file; EpisodeError if it is damaged, none, or of another version.
+
+    One that was cut off is read with a warning if the drive is before the cut.
+    """
     path = local_path(path, EpisodeError)
     data = read_bytes(path, MAX_EPISODE_BYTES, EpisodeError)
     try:
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            _check_sizes({member.filename: member.file_size for member in archive.infolist()})
-        with np.load(io.BytesIO(data), allow_pickle=False) as members:
-            if "header" not in members.files:
-                raise EpisodeError("the episode lacks 'header'")
-            header = _header(members["header"])
-            arrays = {name: members[name] for name in members.files if name in _KNOWN}
+        arrays, lost = _read(data)
+        if "header" not in arrays:
+            raise EpisodeError("the episode lacks 'header'")
+        header = _header(arrays.pop("header"))
         _check(arrays)
-        return _episode(header, arrays)
+        found = _episode(header, arrays)
     except (EpisodeError, MapError) as error:
         raise EpisodeError(f"{path}: {error}") from None
     except KeyError as error:
         raise EpisodeError(f"{path}: the episode lacks {error}") from None
     except Exception as error:  # zipfile, zlib and numpy raise many kinds for damage
         raise EpisodeError(f"{path}: damaged, or not an episode ({error!s:.100})") from None
+    if lost:
+        ticks = len(found.commands)
+        words = (
+            f"{path} was cut off or is damaged: its drive of {ticks} ticks is read, but not {lost}"
+        )
+        warnings.warn(words, DynastarWarning, stacklevel=2)
+    return found
+
+
+def _read(data: bytes) -> tuple[Arrays, str]:
+    """The arrays of a file with its header, and what was lost where the file was cut off, or ""."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            _check_sizes({member.filename: member.file_size for member in archive.infolist()})
+        with np.load(io.BytesIO(data), allow_pickle=False) as members:
+            names = [name for name in members.files if name in {*_KNOWN, "header"}]
+            return {name: members[name] for name in names}, ""
+    except zipfile.BadZipFile:
+        arrays = arrays_before_cut(data, MAX_EPISODE_BYTES)
+        if not arrays:
+            raise
+    return _without_rest(arrays)
+
+
+def _without_rest(arrays: Arrays) -> tuple[Arrays, str]:
+    """What is left of a file that was cut off, made complete; and what is not in it, in words."""
+    ends = [name for name in ("header", *_DRIVE) if name not in arrays]
+    if ends:
+        raise EpisodeError(f"cut off or damaged: it ends at '{ends[0]}', before the drive is whole")
+    lost = []
+    if not arrays.keys() >= set(_EXPLORED):
+        lost.append("the cells that its plans looked at")
+        arrays["explored"] = np.empty((0, 2), np.int32)
+        arrays["explored_rows"] = np.zeros_like(arrays["plan_rows"])
+    if not arrays.keys() >= _TRACE.keys() and _header(arrays["header"])["seen_frame"] is not None:
+        lost.append("what the navigator considered at each tick")
+        arrays = {name: array for name, array in arrays.items() if name not in _TRACE}
+    return arrays, " and ".join(lost) or "its index"
 
 
 def _arrays(episode: Episode) -> Arrays:

@@ -1,18 +1,24 @@
 """Recordings: MCAP in rosbag2's form, written and read without ROS by the library rosbags."""
 
+import heapq
 import shutil
 import tempfile
+import warnings
 from collections.abc import Iterator
 from functools import cache
+from operator import itemgetter
 from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from dynastar.errors import DataError
+from dynastar.errors import DataError, DynastarWarning
 from dynastar.extras import require
 from dynastar.io.paths import local_path
+from dynastar.ros.cut_bag import has_journal, read_cut
+
+STORED_EVERY = 10**9  # ns after which what was written in place is on the disk
 
 
 @cache
@@ -56,8 +62,8 @@ def _zero(kind: str, detail: Any) -> Any:
 class BagWriter:
     """Writes messages to a new folder; it appears under its name when it is closed, and is whole.
 
-    ``aside=False`` writes in place, so that what was recorded up to a crash is kept. Raises DataError
-    where there is something of that name.
+    ``aside=False`` writes in place, so that what was recorded up to a crash is kept but for the last
+    second. Raises DataError where there is something of that name.
     """
 
     def __init__(self, folder: Path, aside: bool = True) -> None:
@@ -75,6 +81,7 @@ class BagWriter:
         self._writer.open()
         self._connections: dict[str, Any] = {}
         self._last = -1
+        self._stored = -STORED_EVERY
 
     def write(self, topic: str, kind: str, time: float, message: Any) -> None:
         """Writes a message that ``make`` has made, at a time in seconds."""
@@ -91,6 +98,12 @@ class BagWriter:
             self._connections[topic] = connection
         self._last = max(1000 * round(1e6 * time), self._last + 1)
         self._writer.write(connection, self._last, data)
+        storage: Any = self._writer.storage
+        late = self._last - self._stored > STORED_EVERY
+        if self._aside is None and late and storage.chunk.bio.tell():
+            storage.close_chunk()
+            storage.bio.flush()
+            self._stored = self._last
 
     def close(self) -> None:
         """Ends the recording and gives it its name."""
@@ -123,36 +136,119 @@ class Recorded(NamedTuple):
     message: Any
 
 
-class BagReader:
-    """A recording: a folder in rosbag2's form, or an .mcap file alone. DataError where it is none."""
+class _Whole:
+    """A recording, or one of its files, that rosbags can read."""
 
     def __init__(self, path: Path) -> None:
-        self.path, self._store = local_path(path, DataError), _types()
         from rosbags.highlevel import AnyReader
 
+        self._reader = AnyReader([path], default_typestore=_types())
+        self._reader.open()
+        found = self._reader.connections
+        counted = any(one.msgcount for one in found)  # some files do not count their messages
+        self.topics = {one.topic: one.msgtype for one in found if one.msgcount or not counted}
+        self.count = self._reader.message_count
+        self.span = (self._reader.start_time, self._reader.end_time)
+
+    def messages(self, topics: set[str]) -> Iterator[tuple[int, str, Any]]:
+        """Time (ns), topic and message, by time."""
+        wanted = [found for found in self._reader.connections if found.topic in topics]
+        for connection, time, data in self._reader.messages(connections=wanted):
+            yield time, connection.topic, self._reader.deserialize(data, connection.msgtype)
+
+    def close(self) -> None:
+        self._reader.close()
+
+
+class _Cut:
+    """A file of a recording that was cut off."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self.topics: dict[str, str] = {}
+        self.count, self.span = 0, (2**63, 0)
+        for raw in read_cut(path):
+            if raw.kind in _types().fielddefs:
+                self.topics[raw.topic] = raw.kind
+            self.count += 1
+            self.span = (min(self.span[0], raw.time), max(self.span[1], raw.time))
+
+    def messages(self, topics: set[str]) -> Iterator[tuple[int, str, Any]]:
+        """Time (ns), topic and message, by time."""
+        wanted = topics & self.topics.keys()
+        found = [raw for raw in read_cut(self._path) if raw.topic in wanted]
+        for raw in sorted(found, key=lambda raw: raw.time):
+            yield raw.time, raw.topic, _types().deserialize_cdr(raw.data, raw.kind)
+
+    def close(self) -> None:
+        """Nothing is open."""
+
+
+class BagReader:
+    """A recording: a folder in rosbag2's form, or an .mcap or .db3 file alone.
+
+    One that was cut off is read as far as it goes, with a warning. DataError where nothing can be read.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self.path = local_path(path, DataError)
+        _types()
         if not self.path.exists():
             raise DataError(f"{path}: there is no such recording")
         try:
-            self._reader = AnyReader([self.path], default_typestore=self._store)
-            self._reader.open()
+            if has_journal(self.path):
+                raise DataError("it was not closed")
+            self._parts: list[_Whole | _Cut] = [_Whole(self.path)]
         except Exception as error:  # rosbags raises many kinds for damage
-            raise DataError(f"{path}: not a recording that can be read: {error!s:.200}") from None
+            why = " ".join(str(error).split())
+            self._parts = _files_of(self.path)
+            if not self._parts:
+                raise DataError(f"{path}: not a recording that can be read: {why:.200}") from None
+            self._warn(why)
+
+    def _warn(self, why: str) -> None:
+        """Say where a recording that was cut off ends."""
+        first, last = zip(*(part.span for part in self._parts), strict=True)
+        count = sum(part.count for part in self._parts)
+        words = (
+            f"{self.path} was cut off or is damaged: it is read up to "
+            f"{1e-9 * (max(last) - min(first)):.3f} s after its first message, {count} messages in all "
+            f"({why:.200})"
+        )
+        warnings.warn(words, DynastarWarning, stacklevel=3)
 
     @property
     def topics(self) -> dict[str, str]:
-        """The type of each topic."""
-        return {found.topic: found.msgtype for found in self._reader.connections}
+        """The type of each topic that has messages."""
+        return {topic: kind for part in self._parts for topic, kind in part.topics.items()}
 
     def messages(self, topics: set[str]) -> Iterator[Recorded]:
         """Messages of topics by time, those of one time as they were written."""
-        wanted = [found for found in self._reader.connections if found.topic in topics]
+        parts = (part.messages(topics) for part in self._parts)
         try:
-            for connection, time, data in self._reader.messages(connections=wanted):
-                message = self._reader.deserialize(data, connection.msgtype)
-                yield Recorded(connection.topic, 1e-6 * (time // 1000), message)
+            for time, topic, message in heapq.merge(*parts, key=itemgetter(0)):
+                yield Recorded(topic, 1e-6 * (time // 1000), message)
         except Exception as error:  # as above
             raise DataError(f"{self.path}: damaged: {error!s:.200}") from None
 
     def close(self) -> None:
         """Closes the files."""
-        self._reader.close()
+        for part in self._parts:
+            part.close()
+
+
+def _files_of(path: Path) -> list[_Whole | _Cut]:
+    """The files of a recording of which something can be read."""
+    files = [path]
+    if path.is_dir():
+        files = sorted(file for file in path.iterdir() if file.suffix in (".mcap", ".db3"))
+    parts: list[_Whole | _Cut] = []
+    for file in files:
+        try:
+            parts.append(_Cut(file) if has_journal(file) else _Whole(file))
+        except Exception:  # as above
+            parts.append(_Cut(file))
+    for part in parts:
+        if not part.count:
+            part.close()
+    return [part for part in parts if part.count]
