@@ -20,7 +20,10 @@ def odometry(k):
 
 
 def foreign(folder, topics=("/robot/map", "/robot/front/scan", "/robot/odom", "/goal_pose")):
-    """A recording by something else: no requests, wall-clock receive times, other names."""
+    """A recording by something else: no requests, wall-clock receive times, other names.
+
+    A topic of None is left out, map or goal.
+    """
     names = dict(zip(("map", "scan", "odom", "goal"), topics, strict=True))
     values = np.zeros((100, 100), np.int8)
     values[[0, -1]] = values[:, [0, -1]] = 100
@@ -28,12 +31,13 @@ def foreign(folder, topics=("/robot/map", "/robot/front/scan", "/robot/odom", "/
     with BagWriter(folder) as bag:
         wall, pose = 1.7e9, Pose2D(1.0, 2.5, 0.0)
         grid = OUT.grid(values, (0.05, 0.0, 0.0), "map", 0.0)
-        bag.write(names["map"], "nav_msgs/msg/OccupancyGrid", wall, grid)
+        if names["map"] is not None:
+            bag.write(names["map"], "nav_msgs/msg/OccupancyGrid", wall, grid)
         goal_message = make("geometry_msgs/msg/PoseStamped", **goal)
         for k in range(20):
             time = 0.1 * k
-            odometry = OUT.odometry(pose, Twist(0.0, 0.0), ("odom", "base"), time)
-            bag.write(names["odom"], "nav_msgs/msg/Odometry", wall + time, odometry)
+            message = OUT.odometry(pose, Twist(0.0, 0.0), ("odom", "base"), time)
+            bag.write(names["odom"], ODOMETRY, wall + time, message)
             scan = make(
                 "sensor_msgs/msg/LaserScan",
                 header=OUT.header("laser", time),
@@ -43,5 +47,5 @@ def foreign(folder, topics=("/robot/map", "/robot/front/scan", "/robot/odom", "/
                 ranges=np.full(360, np.inf, np.float32),
             )
             bag.write(names["scan"], "sensor_msgs/msg/LaserScan", wall + time, scan)
-            if k == 5:
+            if k == 5 and names["goal"] is not None:
                 bag.write(names["goal"], "geometry_msgs/msg/PoseStamped", wall + time, goal_message)

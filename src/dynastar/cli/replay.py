@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any
 from dynastar import io
 from dynastar.cli.arguments import PRESETS, add_json, add_set
 from dynastar.cli.outputs import make_folder
-from dynastar.cli.parsing import path
+from dynastar.cli.parsing import number, path
 from dynastar.cli.show import as_json, side_by_side
 from dynastar.config import choose
 from dynastar.errors import InputError, MissingPackage
 from dynastar.extras import require
 
 if TYPE_CHECKING:
+    from dynastar.geometry import Goal
     from dynastar.ros.replay import Replay
 
 DESCRIPTION = (
@@ -29,6 +30,7 @@ examples:
   dynastar replay out/office-bag
   dynastar replay out/office-bag --set dwa.horizon=2 --set dwa.weights.vel=0.3
   dynastar replay robot.mcap --robot turtlebot3_burger --pose tf --topic scan=/front/scan
+  dynastar replay robot.mcap --robot turtlebot3_burger --map home.yaml --goal 3.5 2 1.57
 
 Writes commands.csv, summary.json and figure.png into DIR. Recordings by dynastar are ticked when they
 were and give the recorded commands; others are ticked at each scan. Nothing is simulated: the robot
@@ -38,10 +40,25 @@ moves as it was recorded, whatever is commanded."""
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the command."""
     parser.add_argument(
-        "bag", metavar="BAG", type=path, help="a folder of rosbag2, or an .mcap file"
+        "bag", metavar="BAG", type=path, help="a folder of rosbag2, or an .mcap or .db3 file"
     )
     parser.add_argument(
         "--robot", metavar="NAME", help="needed unless the recording is by dynastar"
+    )
+    parser.add_argument(
+        "--map",
+        metavar="MAP",
+        type=path,
+        help="this map instead of the recorded: .yaml (ROS), .npy",
+    )
+    parser.add_argument(
+        "--goal",
+        action="append",
+        nargs="+",
+        default=[],
+        type=number,
+        metavar=("X Y", "HEADING"),
+        help="this goal (m, rad) instead of the recorded; repeatable, for several in order",
     )
     parser.add_argument("--preset", choices=PRESETS, help="compare with this preset")
     parser.add_argument(
@@ -70,7 +87,9 @@ def execute(arguments: argparse.Namespace) -> int:
     from dynastar.ros.replay import Overrides, replay
 
     robot = None if arguments.robot is None else choose(arguments.robot, ROBOTS, "robot")
-    as_it_is = Overrides(robot, pose_source=arguments.pose)
+    grid = None if arguments.map is None else io.load_map(arguments.map)
+    goals = tuple(map(_goal, arguments.goal))
+    as_it_is = Overrides(robot, pose_source=arguments.pose, grid=grid, goals=goals)
     runs = {"as recorded" if robot is None else robot.name: as_it_is}
     settings = parsed(arguments.set)
     if arguments.preset is not None or settings:
@@ -87,6 +106,16 @@ def execute(arguments: argparse.Namespace) -> int:
     print(f"results written to {folder}", file=sys.stderr)
     print(as_json(summaries) if arguments.json else side_by_side(summaries))
     return 0
+
+
+def _goal(numbers: list[float]) -> "Goal":
+    """The goal that the numbers of ``--goal`` stand for; InputError where they are not 2 or 3."""
+    from dynastar.geometry import Goal
+
+    if len(numbers) not in (2, 3):
+        words = " ".join(f"{value:g}" for value in numbers)
+        raise InputError(f"--goal {words:.80}: expected X Y, or X Y HEADING")
+    return Goal(*numbers)
 
 
 def _remap(pairs: list[str]) -> dict[str, str]:

@@ -91,7 +91,7 @@ class Bridge:
         """Use a message of a topic in TAKES. Returns what is wrong with it, or ""."""
         try:
             if topic == "map" or topic.endswith("_filter_mask"):
-                self._take_layer(topic, message)
+                self._use_layer(topic, grid_of(message, self.settings.global_frame))
             elif topic == "scan":
                 self._take_scan(message)
             elif topic == "odom":
@@ -109,10 +109,13 @@ class Bridge:
         self._refusals.pop(topic, None)
         return ""
 
-    def _take_layer(self, topic: str, message: Any) -> None:
+    def use_map(self, grid: OccupancyGrid) -> None:
+        """Uses a map as if a message had brought it. InputError where it does not fit the masks."""
+        self._use_layer("map", grid)
+
+    def _use_layer(self, topic: str, layer: OccupancyGrid) -> None:
         """A navigator for the map with its masks, or the present one with another map."""
-        settings, frame = self.settings, self.settings.global_frame
-        grids = {**self._layers, topic: grid_of(message, frame)}
+        settings, grids = self.settings, {**self._layers, topic: layer}
         grid = grids.get("map")
         if grid is not None and "keepout_filter_mask" in grids:
             grid = with_keepout(grid, grids["keepout_filter_mask"])

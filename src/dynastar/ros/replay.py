@@ -3,7 +3,7 @@
 import json
 import math
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,7 +13,8 @@ import numpy.typing as npt
 from tqdm import tqdm
 
 from dynastar.errors import DataError, DynastarError
-from dynastar.geometry import Twist
+from dynastar.geometry import Goal, Twist
+from dynastar.grid import OccupancyGrid
 from dynastar.navigator import configured
 from dynastar.navigator.config import changed
 from dynastar.robot import Robot
@@ -30,6 +31,8 @@ OF_THE_ROBOT = (
     "period", "latency", "range_error", "pose_error", "heading_error", "goal_tolerance",
     "heading_tolerance", "unknown",
 )  # fmt: skip
+# Options of `dynastar replay` for what a recording may lack.
+INSTEAD = {"map": "--map MAP, or ", "goal_pose": "--goal X Y [HEADING], or "}
 MOST_REFUSALS = 3  # shown in the summary
 SAME = 1e-6  # m/s and rad/s up to which two commands are the same
 
@@ -80,15 +83,23 @@ def _median(values: npt.NDArray[np.float64]) -> float:
 
 
 class Overrides(NamedTuple):
-    """Robot, preset, settings and source of the pose instead of those recorded; None and {} keep them."""
+    """What is used instead of what was recorded; None, {} and () keep that."""
 
     robot: Robot | None = None
     preset: str | None = None
     settings: Mapping[str, Any] = {}
     pose_source: PoseSource | None = None
+    grid: OccupancyGrid | None = None
+    goals: tuple[Goal, ...] = ()
 
     def bridge(self, recorded: Bridge | None) -> Bridge:
-        """A bridge like the recorded one, or a new one, but for what is given here."""
+        """A bridge like the recorded one, or a new one, but for what is given here, with its map."""
+        made = self._bridge(recorded)
+        if self.grid is not None:
+            made.use_map(self.grid)
+        return made
+
+    def _bridge(self, recorded: Bridge | None) -> Bridge:
         if recorded is None:
             assert self.robot is not None
             source = self.pose_source or "odom"
@@ -102,6 +113,12 @@ class Overrides(NamedTuple):
             config = configured(self.preset, {name: getattr(config, name) for name in OF_THE_ROBOT})
         config = changed(config, self.settings)
         return Bridge(own, self.robot or recorded.robot, config)
+
+    @property
+    def replaced(self) -> set[str]:
+        """Topics and requests of the recording that are left out."""
+        goals = {"goal_pose", "goals", "follow", "cancel"} if self.goals else set()
+        return goals | ({"map"} if self.grid is not None else set())
 
     @property
     def keeps_settings(self) -> bool:
@@ -118,13 +135,14 @@ def replay(
     """Gives a recording's messages to a navigator and returns what it answers.
 
     A recording by dynastar says which robot and settings it was made with; others need
-    ``overrides.robot``. dynastar's own are ticked when they were, others at each scan, by its stamp.
+    ``overrides.robot``, and map and goals in ``overrides`` where they are not recorded. dynastar's own
+    are ticked when they were, others at each scan, by its stamp.
     ``remap`` maps a topic as in ``bridge.TAKES`` to the recording's name for it. Raises DataError for
-    a recording that cannot be read or lacks map, scan or odometry.
+    a recording that cannot be read or lacks map, scan, odometry or a goal.
     """
     bag = BagReader(path)
     try:
-        topics = _topics(bag, remap or {})
+        topics = _topics(bag, remap or {}, overrides.replaced)
         if REQUESTS not in topics and overrides.robot is None:
             raise DataError(f"{bag.path} is not by dynastar: name its robot with --robot")
         ticks = list(_ticks(bag, topics, overrides, progress))
@@ -141,11 +159,16 @@ def replay(
     )
 
 
-def _topics(bag: BagReader, remap: Mapping[str, str]) -> dict[str, str]:
-    """The recording's topics by the bridge's names; DataError where one is missing or ambiguous."""
+def _topics(bag: BagReader, remap: Mapping[str, str], replaced: Set[str]) -> dict[str, str]:
+    """The recording's topics by the bridge's names; DataError where one is missing or ambiguous.
+
+    Those in ``replaced`` are left out.
+    """
     names: dict[str, str] = {}
     kinds = {**TAKES, REQUESTS: "std_msgs/msg/String", COMMANDS: ""}
     for short, kind in kinds.items():
+        if short in replaced:
+            continue
         wanted = remap.get(short.lstrip("/"), short)
         found = [
             name
@@ -162,11 +185,14 @@ def _topics(bag: BagReader, remap: Mapping[str, str]) -> dict[str, str]:
             )
         if found:
             names[short] = found[0]
-    for short in ("map", "scan", "odom"):
-        if short not in names:
+    needed = ["map", "scan", "odom", *([] if REQUESTS in names else ["goal_pose"])]
+    for short in needed:
+        if short not in names and short not in replaced:
             have = ", ".join(sorted(bag.topics)) or "nothing"
+            option = INSTEAD.get(short, "")
             raise DataError(
-                f"{bag.path}: no topic '{short}' of type {TAKES[short]} in it, which has {have}"
+                f"{bag.path}: no topic '{short}' of type {TAKES[short]} in it: give {option}"
+                f"--topic {short}=TOPIC for one of another name; it has {have}"
             )
     return names
 
@@ -187,7 +213,7 @@ def _ticks(
     ours = REQUESTS in topics  # recorded by dynastar
     bridge = None if ours else overrides.bridge(None)
     shorts = {name: short for short, name in topics.items()}
-    refused = ""
+    refused, led = "", None
     for name, at, message in tqdm(
         bag.messages(set(shorts)), desc="replay", unit=" messages", disable=not progress, delay=0.5
     ):
@@ -197,6 +223,9 @@ def _ticks(
         elif bridge is not None:
             if short != COMMANDS:
                 refused = bridge.take(short, message) or refused
+            if overrides.goals and bridge.navigator is not led:
+                led = bridge.navigator  # a new one, which has no goals yet
+                bridge.set_goals(list(overrides.goals))
             if ours and short == COMMANDS:
                 yield _ticked(bridge, at, twist_of(getattr(message, "twist", message)), refused)
                 refused = ""
@@ -218,6 +247,7 @@ def _requested(
     """Carries out a recorded request; settings that are given for the replay stay as they are."""
     try:
         wanted = dict(json.loads(words))
+        wanted = {name: one for name, one in wanted.items() if name not in overrides.replaced}
     except (ValueError, TypeError) as error:
         return bridge, f"a request cannot be read: {error}"
     if "start" in wanted:
