@@ -56,7 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         nargs="+",
         default=[],
-        type=number,
+        type=_number,
         metavar=("X Y", "HEADING"),
         help="this goal (m, rad) instead of the recorded; repeatable, for several in order",
     )
@@ -106,6 +106,15 @@ def execute(arguments: argparse.Namespace) -> int:
     print(f"results written to {folder}", file=sys.stderr)
     print(as_json(summaries) if arguments.json else side_by_side(summaries))
     return 0
+
+
+def _number(text: str) -> float:
+    """A number of ``--goal``, which takes all words up to the next option."""
+    try:
+        return number(text)
+    except ValueError:
+        words = f"{text!r:.80} is no number; BAG comes before --goal"
+        raise argparse.ArgumentTypeError(words) from None
 
 
 def _goal(numbers: list[float]) -> "Goal":

@@ -114,8 +114,6 @@ def load_episode(path: str | Path) -> Episode:
     data = read_bytes(path, MAX_EPISODE_BYTES, EpisodeError)
     try:
         arrays, lost = _read(data)
-        if "header" not in arrays:
-            raise EpisodeError("the episode lacks 'header'")
         header = _header(arrays.pop("header"))
         _check(arrays)
         found = _episode(header, arrays)
@@ -126,11 +124,8 @@ def load_episode(path: str | Path) -> Episode:
     except Exception as error:  # zipfile, zlib and numpy raise many kinds for damage
         raise EpisodeError(f"{path}: damaged, or not an episode ({error!s:.100})") from None
     if lost:
-        ticks = len(found.commands)
-        words = (
-            f"{path} was cut off or is damaged: its drive of {ticks} ticks is read, but not {lost}"
-        )
-        warnings.warn(words, DynastarWarning, stacklevel=2)
+        drive = f"its drive of {len(found.commands)} ticks is read, but not {lost}"
+        warnings.warn(f"{path} was cut off or is damaged: {drive}", DynastarWarning, stacklevel=2)
     return found
 
 
@@ -151,7 +146,8 @@ def _read(data: bytes) -> tuple[Arrays, str]:
 
 def _without_rest(arrays: Arrays) -> tuple[Arrays, str]:
     """What is left of a file that was cut off, made complete; and what is not in it, in words."""
-    ends = [name for name in ("header", *_DRIVE) if name not in arrays]
+    header = _header(arrays["header"])
+    ends = [name for name in _DRIVE if name not in arrays]
     if ends:
         raise EpisodeError(f"cut off or damaged: it ends at '{ends[0]}', before the drive is whole")
     lost = []
@@ -159,7 +155,7 @@ def _without_rest(arrays: Arrays) -> tuple[Arrays, str]:
         lost.append("the cells that its plans looked at")
         arrays["explored"] = np.empty((0, 2), np.int32)
         arrays["explored_rows"] = np.zeros_like(arrays["plan_rows"])
-    if not arrays.keys() >= _TRACE.keys() and _header(arrays["header"])["seen_frame"] is not None:
+    if not arrays.keys() >= _TRACE.keys() and header["seen_frame"] is not None:
         lost.append("what the navigator considered at each tick")
         arrays = {name: array for name, array in arrays.items() if name not in _TRACE}
     return arrays, " and ".join(lost) or "its index"
