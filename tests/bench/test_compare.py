@@ -31,7 +31,7 @@ def test_outcomes_that_changed_and_paired_differences():
     assert (found["lost"], found["gained"], found["p_success"]) == ([2], [4], 1.0)
     assert found["time"] == {"mean": 2.0, "interval": None, "pairs": 1}
     assert found["length"]["mean"] == pytest.approx(0.2)
-    assert found["verdict"].startswith("no clear difference: 1 missions gained, 1 lost")
+    assert found["verdict"].startswith("no difference: 1 missions gained, 1 lost")
 
 
 def test_a_result_is_no_different_from_itself():
@@ -39,12 +39,13 @@ def test_a_result_is_no_different_from_itself():
     found = only(first, first)
     assert found["changed"] == []
     assert found["time"] == {"mean": 0.0, "interval": (0.0, 0.0), "pairs": 8}
-    assert found["verdict"].startswith("no clear difference")
+    assert found["verdict"].startswith("no difference")
 
 
 @pytest.mark.parametrize(
-    ("lost", "gained", "word"), [(0, 6, "better"), (6, 0, "worse"), (0, 5, "no clear"), (3, 12, "better")]
-)  # fmt: skip
+    ("lost", "gained", "word"),
+    [(0, 6, "better"), (6, 0, "worse"), (0, 5, "may be chance"), (3, 12, "better")],
+)
 def test_success_decides_first(lost, gained, word):
     alike = 4
     outcomes = [["arrived", "timeout"]] * lost + [["timeout", "arrived"]] * gained
@@ -63,7 +64,7 @@ def test_then_time_decides(by, word):
     second = result(["arrived"] * 6, [t + by + 0.1 * (-1) ** n for n, t in enumerate(times)])
     assert only(first, second)["verdict"].startswith(word)
     fewer = {"mean": by, "interval": (by, by), "pairs": 5}
-    assert verdict(0, 0, 1.0, fewer).startswith("no clear")
+    assert verdict((0, 0, 5), 1.0, fewer).startswith("no difference")
 
 
 def test_a_contact_is_no_success_and_a_right_word_is_one():
@@ -97,12 +98,32 @@ def test_suites_of_one_file_are_named():
         compare(result(["arrived"]), result(["arrived"], name="other"))
 
 
+def test_chance_is_named_with_the_missions_that_a_difference_takes():
+    outcomes = [["arrived", "timeout"]] * 6 + [["timeout", "arrived"]] * 3 + [["arrived"] * 2] * 11
+    first, second = zip(*outcomes, strict=True)
+    found = only(result(first), result(second))
+    assert found["verdict"] == (
+        "may be chance: 3 missions gained, 6 lost (p = 0.51); about 155 missions would show a "
+        "difference of that size"
+    )
+
+
+def test_all_suites_together_are_judged():
+    first, second = result(["arrived"] * 4), result(["timeout"] * 4)
+    other, changed = result(["arrived"] * 3, name="x"), result(["timeout"] * 3, name="x")
+    found = compare(first | other, second | changed)
+    assert [found["suites"][name]["p_success"] < 0.05 for name in ("small", "x")] == [False, False]
+    assert found["together"]["verdict"] == "worse: 0 missions gained, 7 lost (p = 0.016)"
+    assert "all suites, 7 missions: worse" in "\n".join(as_lines(found))
+    assert "all suites" not in "\n".join(as_lines(compare(first, second)))
+
+
 def test_lines_say_it_all():
     first = result(["arrived", "timeout"], (10.0, 99.0), controller="navigator")
     second = result(["arrived", "contact"], (12.0, 4.0), controller="pure_pursuit")
     lines = "\n".join(as_lines(compare(first | result([], name="x"), second)))
     for part in (
-        "small: no clear difference",
+        "small: no difference",
         "controller: navigator -> pure_pursuit",
         "time, where both arrived (1): +2.000 s",
         "timeout -> contact: 2",

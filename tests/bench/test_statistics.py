@@ -5,7 +5,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dynastar.bench.statistics import bootstrap, mcnemar, succeeded, totals, wilson
+from dynastar.bench.statistics import (
+    bootstrap,
+    mcnemar,
+    pairs_needed,
+    succeeded,
+    totals,
+    wilson,
+)
 
 
 @pytest.mark.parametrize(
@@ -117,3 +124,10 @@ def test_totals_count_missions() -> None:
     result = totals(rows, 0)
     assert (result["contacts_moving"], result["contacts_resting"], result["timeouts"]) == (1, 1, 1)
     assert (result["mean_length"], result["mean_time"]) == (2.0, None)
+
+
+@pytest.mark.parametrize(
+    ("counts", "needed"), [((45, 5, 100), 23), ((60, 30, 200), 155), ((4, 4, 50), None)]
+)
+def test_pairs_needed_are_those_of_published_examples(counts, needed):
+    assert pairs_needed(*counts) == needed
