@@ -232,3 +232,26 @@ def test_gaps_are_distances_to_what_stands():
     world = World(scenario(QUICK, obstacles=(BOX,)), START)
     points = np.array([[11.0, 10.0], [12.5, 10.0], [-1.0, 5.0], [0.4, 10.0]])
     assert world.gaps(points) == pytest.approx([1.0, 0.0, 0.0, 0.4])
+
+
+class OneWalker:
+    """Walks at 1 m/s towards a robot at ``START``, from 2 m ahead."""
+
+    radii = np.array([0.25])
+
+    def at(self, time):
+        return np.array([[START.x + 2.0 - time, START.y]])
+
+    def advance(self, time, pose):
+        self.advanced = time
+
+
+def test_walkers_of_a_callers_own_are_stepped_seen_and_touched():
+    walker = OneWalker()
+    world = World(scenario(QUICK), START, walkers=walker)
+    assert world.movers.tolist() == [[12.0, 10.0]]
+    assert np.nanmin(world.scan().ranges) == pytest.approx(1.75, abs=0.02)
+    driven(world, (0.0, 0.0), 3.0)
+    assert world.contact == "resting"
+    assert world.time == pytest.approx(2.0 - 0.25 - 0.3, abs=0.011)
+    assert walker.advanced == world.time

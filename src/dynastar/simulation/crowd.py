@@ -71,9 +71,9 @@ class Crowd:
     ) -> None:
         if not jupedsim_installed():
             raise ScenarioError(f"pedestrians who react need JuPedSim: {INSTALL}")
-        self._radii = np.array([pedestrian.radius for pedestrian in pedestrians])
+        self.radii = np.array([pedestrian.radius for pedestrian in pedestrians])
         self._area = _part_with(pedestrians, walkable_area(grid, obstacles))
-        self._clear = [self._area.buffer(-(radius + WALL_GAP)) for radius in self._radii]
+        self._clear = [self._area.buffer(-(radius + WALL_GAP)) for radius in self.radii]
         for shape in (self._area, *self._clear):
             shapely.prepare(shape)
         try:
@@ -82,7 +82,7 @@ class Crowd:
             raise ScenarioError(f"the pedestrians cannot start: {error}") from error
         self._steps = 0
         self._before = self._after = self._positions()
-        self._stood, self._since = self._after.copy(), np.zeros(len(self._radii), np.int64)
+        self._stood, self._since = self._after.copy(), np.zeros(len(self.radii), np.int64)
 
     def at(self, time: float) -> Floats:
         """Centres (m, 2) in metres at ``time`` (s), which lies in the step advanced to last."""

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -27,15 +27,34 @@ SUBSTEP = 0.01  # s, the longest stretch driven at one twist
 RESTING = 0.02  # m/s and rad/s under which a contact happens at rest
 
 
+class Walkers(Protocol):
+    """People in a world who are stepped beside the robot, as ``Crowd`` is; ``radii`` is (m,) metres."""
+
+    radii: Floats
+
+    def at(self, time: float) -> Floats:
+        """Centres (m, 2) in metres at ``time`` (s), which lies in the step advanced to last."""
+
+    def advance(self, time: float, pose: Pose2D) -> None:
+        """Takes the steps that begin up to ``time`` (s), with the robot at ``pose``."""
+
+
 class World:
     """True state of the robot: ``time`` (s), ``pose``, ``twist``, ``clearance`` (m), ``contact``.
 
     ``drive`` is the simulated drive. ``clearance`` is the smallest gap between footprint and anything since
     the last ``step`` began; ``contact`` says what a touch was, and the world then stands still.
+    ``walkers`` replace the scenario's crowd.
     Raises ScenarioError for obstacles, movers or a seed that no world can be made of.
     """
 
-    def __init__(self, scenario: Scenario, start: Pose2D, seed: int | None = None) -> None:
+    def __init__(
+        self,
+        scenario: Scenario,
+        start: Pose2D,
+        seed: int | None = None,
+        walkers: Walkers | None = None,
+    ) -> None:
         seed = scenario.seed if seed is None else seed
         if seed < 0:
             raise ScenarioError(f"the seed is {seed}: expected 0 or more")
@@ -43,12 +62,11 @@ class World:
         senses = np.random.SeedSequence(seed).spawn(3)
         self._scenario, self._robot = scenario, scenario.robot
         self._solids = Solids(grid, scenario.obstacles)
+        self._crowd = walkers
+        if walkers is None and scenario.crowd:
+            footprint = scenario.robot.footprint
+            self._crowd = Crowd(scenario.crowd, grid, scenario.obstacles, footprint, seed)
         self._set_movers(Movers(scenario.movers))
-        self._crowd = (
-            Crowd(scenario.crowd, grid, scenario.obstacles, scenario.robot.footprint, seed)
-            if scenario.crowd
-            else None
-        )
         self._lidar = LidarSimulator(
             scenario.robot.lidar,
             grid,
@@ -131,7 +149,7 @@ class World:
         self._look(self.twist, thoroughly=True)
 
     def _set_movers(self, movers: Movers) -> None:
-        crowd_radii = [pedestrian.radius for pedestrian in self._scenario.crowd]
+        crowd_radii = np.empty(0) if self._crowd is None else self._crowd.radii
         self._movers, self.mover_radii = movers, np.concatenate([movers.radii, crowd_radii])
 
     def _set_obstacles(self, rings: Sequence[Floats]) -> None:
