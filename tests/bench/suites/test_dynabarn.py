@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from dynastar.bench.missions import Options
+from dynastar.bench.selection import choose_missions
 from dynastar.bench.suites import dynabarn
 from dynastar.errors import DataError
 from dynastar.io.dynabarn import load_dynabarn
@@ -52,6 +53,27 @@ def test_every_world_has_four_start_times(tmp_path: Path) -> None:
     assert again.times == pytest.approx(dynabarn.scenario(made[2], options, 0).movers[0].times)
     other = dynabarn.scenario(made[2], options._replace(seed=1), 0).movers[0]
     assert again.times[0] != other.times[0]
+
+
+def test_the_same_missions_at_half_a_metre_per_second(tmp_path: Path) -> None:
+    options = write(tmp_path, table())._replace(select="0:")
+    made = list(dynabarn.missions(options))
+    assert [mission.number for mission in made[8:]] == [
+        1008,
+        1009,
+        1010,
+        1011,
+        1020,
+        1021,
+        1022,
+        1023,
+    ]
+    fast, slow = (dynabarn.scenario(mission, options, 0) for mission in (made[2], made[10]))
+    assert (fast.robot.limits.v_max, slow.robot.limits.v_max) == (2.0, 0.5)
+    assert slow.movers[0].times.tolist() == fast.movers[0].times.tolist()
+    assert [chosen.number for chosen in choose_missions(dynabarn, options)[0]][-1] == 1023
+    select = options._replace(select="1000::4")
+    assert [m.number for m in choose_missions(dynabarn, select)[0]] == [1008, 1020]
 
 
 def test_a_mover_goes_on_as_recorded_from_its_start_time(tmp_path: Path) -> None:

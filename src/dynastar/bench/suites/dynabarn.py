@@ -7,9 +7,13 @@ their keys in a loop and react to nobody.
 
 At the end of a loop most discs jump back to their first key. A jump onto the robot cannot be avoided:
 ``contact_after_jump`` of the row tells that the disc that was touched had jumped within 0.2 s before.
+
+Published runs are of robots that drive at 0.5 m/s at most. The missions from 1000 on are those from 0 on
+with that top speed; they are run with ``--select`` only (``1000::4``: the 60 worlds from their begin).
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -34,12 +38,20 @@ from dynastar.simulation import Mover, Scenario
 DEFAULT_MISSIONS = None
 QUICK_MISSIONS = 24
 
+PUBLISHED = (
+    ("DWA at 0.5 m/s", "success 0.78 easy, 0.43 medium, 0.17 hard", "DynaBARN"),
+    ("TD3 at 0.5 m/s", "success 0.74 easy, 0.60 medium, 0.28 hard", "DynaBARN"),
+    ("Dyna-LfLH at 0.5 m/s", "success 0.225", "DynaLfLH"),
+    ("LfH-CP at 0.5 m/s", "success 0.308", "DynaLfLH"),
+)
 COMPARABLE = (
     "Worlds and robot are those of DynaBARN, the score's formula that of the BARN challenge with the "
-    "straight line of 20 m as its path; no figures are published for these runs."
+    "straight line of 20 m as its path. The published figures, which are quoted from secondary sources, "
+    "are of runs in Gazebo at 0.5 m/s; they compare with the missions from 1000 on (--select 1000::4)."
 )
 
 PHASES = 4
+SLOW_FROM, SLOW = 1000, 0.5  # first number of the slow missions, and their top speed, m/s
 LATEST_START = 60.0  # s
 JUST_JUMPED = 0.2  # s
 SMALLEST_JUMP = 0.05  # m
@@ -48,10 +60,11 @@ MARGIN = 2.0  # m of the map round the walls and the start
 
 
 def missions(options: Options) -> Iterator[Mission]:
-    """Every world four times; ``spec`` is (world, phase)."""
-    for world in _data(options).worlds:
-        for phase in range(PHASES):
-            yield Mission(PHASES * world + phase, (world, phase))
+    """Every world four times; ``spec`` is (world, phase). With ``select`` again, slow."""
+    for first in (0, SLOW_FROM) if options.select is not None else (0,):
+        for world in _data(options).worlds:
+            for phase in range(PHASES):
+                yield Mission(first + PHASES * world + phase, (world, phase))
 
 
 def leave_out(mission: Mission, options: Options) -> str:
@@ -63,13 +76,15 @@ def leave_out(mission: Mission, options: Options) -> str:
 def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
     """A world from one of its start times."""
     del repeat
-    data = _data(options)
+    data, robot = _data(options), ROBOTS["jackal"]
+    if _is_slow(mission):
+        robot = replace(robot, limits=robot.limits._replace(v_max=SLOW))
     world, _ = mission.spec
     start_time = _start_time(mission, options)
     made = Scenario(
         name=f"dynabarn {mission.number}",
         grid=_arena(data),
-        robot=ROBOTS["jackal"],
+        robot=robot,
         start=data.start,
         goals=(Goal(*data.goal),),
         movers=tuple(
@@ -100,7 +115,7 @@ def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, An
         mission,
         repeat,
         score=lambda episode: challenge_score(episode, optimal_time),
-        group=data.worlds[mission.spec[0]].difficulty,
+        group=data.worlds[mission.spec[0]].difficulty + (" 0.5 m/s" if _is_slow(mission) else ""),
         extra=extra,
     )
 
@@ -115,6 +130,10 @@ def contact_after_jump(episode: Episode, movers: tuple[Mover, ...]) -> bool:
     driven_for = float(episode.trajectory.times[-1] - mover.times[0])
     jump = float(np.hypot(*(mover.points[0] - mover.points[-1])))
     return jump > SMALLEST_JUMP and driven_for >= span and driven_for % span <= JUST_JUMPED
+
+
+def _is_slow(mission: Mission) -> bool:
+    return mission.number >= SLOW_FROM
 
 
 def _data(options: Options) -> DynaBarn:
