@@ -69,7 +69,8 @@ def mission_numbered(name: str, suite: Suite, options: Options, number: int) -> 
     """The mission of a number; InputError if the suite does not have it, leaves it out, or drives none."""
     if not hasattr(suite, "scenario"):
         raise InputError(f"the suite {name} drives nothing: there is nothing to replay")
-    mission = next((m for m in suite.missions(options) if m.number >= number), None)
+    missions = suite.missions(options._replace(select=str(number)))
+    mission = next((m for m in missions if m.number >= number), None)
     if mission is None or mission.number != number:
         raise InputError(f"the suite {name} has no mission {number}")
     if why := suite.leave_out(mission, options):

@@ -22,6 +22,7 @@ SUITES = {
     "random": "dynastar.bench.suites.random_worlds",
     "people": "dynastar.bench.suites.people",
     "robots": "dynastar.bench.suites.robots",
+    "crowdnav": "dynastar.bench.suites.crowdnav",
     "physics": "dynastar.bench.suites.physics",
     "scenarios": "dynastar.bench.suites.scenarios",
 }
