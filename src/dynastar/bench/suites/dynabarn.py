@@ -9,7 +9,7 @@ At the end of a loop most discs jump back to their first key. A jump onto the ro
 ``contact_after_jump`` of the row tells that the disc that was touched had jumped within 0.2 s before.
 
 Published runs are of robots that drive at 0.5 m/s at most. The missions from 1000 on are those from 0 on
-with that top speed; they are run with ``--select`` only (``1000::4``: the 60 worlds from their begin).
+with that top speed; they are run with ``--select`` only (``1000::2``: two phases of each).
 """
 
 from collections.abc import Iterator
@@ -47,7 +47,7 @@ PUBLISHED = (
 COMPARABLE = (
     "Worlds and robot are those of DynaBARN, the score's formula that of the BARN challenge with the "
     "straight line of 20 m as its path. The published figures, which are quoted from secondary sources, "
-    "are of runs in Gazebo at 0.5 m/s; they compare with the missions from 1000 on (--select 1000::4)."
+    "are of runs in Gazebo at 0.5 m/s; they compare with the missions from 1000 on (--select 1000::2)."
 )
 
 PHASES = 4
