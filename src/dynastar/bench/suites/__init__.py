@@ -24,6 +24,8 @@ SUITES = {
     "robots": "dynastar.bench.suites.robots",
     "crowdnav": "dynastar.bench.suites.crowdnav",
     "physics": "dynastar.bench.suites.physics",
+    "irsim": "dynastar.bench.suites.irsim",
+    "navground": "dynastar.bench.suites.navground",
     "scenarios": "dynastar.bench.suites.scenarios",
 }
 
