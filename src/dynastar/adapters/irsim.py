@@ -4,7 +4,7 @@ Once this module is imported, a robot of a world file may have it::
 
     behavior: {name: dynastar, settings: {dwa: {horizon: 3.0}}}
 
-The robot needs a goal and a ``lidar2d``. ``Driver`` is the same for a loop of one's own.
+The robot needs a ``lidar2d``. ``Driver`` is the same for a loop of one's own.
 """
 
 import math
@@ -22,8 +22,9 @@ from dynastar.navigator import Navigator, RobotState, configured
 from dynastar.robot import Footprint, Lidar, Limits, Robot
 from dynastar.scan import LaserScan
 
-RESOLUTION = 0.05  # m, of the map of an ir-sim world
-MOST_ACCEL, MOST_OMEGA_ACCEL = 100.0, 200.0  # m/s2 and rad/s2 where ir-sim has no limit
+Settings = Mapping[str, Any] | None
+
+RESOLUTION, MOST_ACCEL = 0.05, 100.0  # m of a map's cell; m/s2 and rad/s2 where there is no limit
 DEVIATIONS = 3.0  # standard deviations that the largest error of a range is taken for
 
 
@@ -31,41 +32,30 @@ def robot_of(thing: Any) -> Robot:
     """The Robot of an ir-sim robot: limits, footprint and lidar."""
     if thing.kinematics != "diff" or thing.lidar is None:
         raise InputError(f"{thing.name}: expected kinematics 'diff' and a sensor 'lidar2d'")
-    v_min, v_max = float(thing.vel_min[0, 0]), float(thing.vel_max[0, 0])
-    omega_max = min(-float(thing.vel_min[1, 0]), float(thing.vel_max[1, 0]))
-    accel = min(float(thing.info.acce[0, 0]), MOST_ACCEL)
-    turn = min(float(thing.info.acce[1, 0]), MOST_OMEGA_ACCEL)
-    circle = thing.shape == "circle"
-    footprint = (
-        Footprint.disc(thing.radius) if circle else Footprint.polygon(thing.original_vertices.T)
-    )
-    lidar = thing.lidar
-    beams = lidar.number - _closed(lidar)
-    fov, mount = min(lidar.angle_range, math.tau), map(float, lidar.offset.ravel())
-    return Robot(
-        thing.name,
-        Limits(v_max, omega_max, accel, turn, accel, turn, v_min=min(v_min, 0.0)),
-        footprint,
-        Lidar(beams, fov, float(lidar.range_min), float(lidar.range_max), *mount),
-    )
-
-
-def _closed(lidar: Any) -> int:
-    """1 if the last beam points where the first does, as on a full circle; else 0."""
-    return int(lidar.number > 1 and lidar.angle_range > math.tau - 1e-6)
+    (v_min, v_max), (turn_min, turn_max) = np.hstack([thing.vel_min, thing.vel_max]).tolist()
+    accel, turn = np.minimum(thing.info.acce[:, 0], MOST_ACCEL).tolist()
+    limits = Limits(v_max, min(-turn_min, turn_max), accel, turn, accel, turn, min(v_min, 0.0))
+    if thing.shape == "circle":
+        footprint = Footprint.disc(thing.radius)
+    else:
+        footprint = Footprint.polygon(thing.original_vertices.T)
+    sensor, scan = thing.lidar, scan_of(thing, 0.0)
+    ranges, mount = (scan.range_min, scan.range_max), sensor.offset.ravel().tolist()
+    lidar = Lidar(len(scan.ranges), min(sensor.angle_range, math.tau), *ranges, *mount)
+    return Robot(thing.name, limits, footprint, lidar)
 
 
 def scan_of(thing: Any, stamp: float) -> LaserScan:
     """The present scan: +inf for no return, NaN for one below range_min, no beam twice."""
     lidar, scan = thing.lidar, thing.get_lidar_scan()
-    ranges = np.array(scan["ranges"], dtype=np.float64)
-    nothing = np.where(ranges >= scan["range_max"], math.inf, math.nan)
-    ranges = np.where(scan["valid"], ranges, nothing)[: lidar.number - _closed(lidar)]
-    mount = Pose2D(*map(float, lidar.offset.ravel()))
-    low, step = scan["angle_min"], scan["angle_increment"]
-    return LaserScan(
-        stamp, ranges.astype(np.float32), low, step, scan["range_min"], scan["range_max"], mount
-    )
+    ranges = np.array(scan["ranges"], dtype=np.float32)
+    nothing = np.where(ranges >= np.float32(scan["range_max"]), np.inf, np.nan)
+    ranges = np.where(scan["valid"], ranges, nothing)
+    if lidar.angle_range > math.tau - 1e-6:  # the last beam points where the first does
+        ranges = ranges[:-1]
+    low, step, least = scan["angle_min"], scan["angle_increment"], scan["range_min"]
+    mount = Pose2D(*lidar.offset.ravel().tolist())
+    return LaserScan(stamp, ranges, low, step, least, scan["range_max"], mount)
 
 
 def state_of(thing: Any, stamp: float) -> RobotState:
@@ -75,44 +65,38 @@ def state_of(thing: Any, stamp: float) -> RobotState:
 
 
 def map_of(env: Any) -> OccupancyGrid:
-    """The world's rectangle; what its grid map has is occupied, objects are left to the lidar."""
+    """The world's grid map, if it has one, else its rectangle; objects are left to the lidar."""
     world = env.get_map()
-    shape = [max(1, round(side / RESOLUTION)) for side in (world.height, world.width)]
-    occupied = np.zeros(shape, dtype=bool)
-    if world.grid is not None:  # [x, y], in per cent
-        rows, columns = (np.arange(n) * size // n for n, size in zip(shape, world.grid.shape[::-1]))
-        occupied = world.grid.T[np.ix_(rows, columns)] > 50
-    return OccupancyGrid.from_occupied(occupied, RESOLUTION, *world.world_offset)
+    if world.grid is not None and np.isclose(*world.grid_resolution):  # [x, y], in per cent
+        occupied, resolution = world.grid.T > 50, world.grid_resolution[0]
+    else:
+        shape = (math.ceil(side / RESOLUTION) for side in (world.height, world.width))
+        occupied, resolution = np.zeros(tuple(shape), dtype=bool), RESOLUTION
+    return OccupancyGrid.from_occupied(occupied, resolution, *world.world_offset)
 
 
 class Driver:
-    """Drives one robot of an ir-sim world to its goal, whatever goal it has by then.
+    """Drives one robot of an ir-sim world to its present goal; see ``navigator`` for its status.
 
-    ``grid`` is the known map (default ``map_of(env)``), ``settings`` are the navigator's, as nested
-    tables. ``navigator`` is there for its status.
+    ``grid`` is the known map (default ``map_of(env)``), ``settings`` are nested tables.
     """
 
     def __init__(
-        self,
-        env: Any,
-        thing: Any,
-        grid: OccupancyGrid | None = None,
-        settings: Mapping[str, Any] | None = None,
+        self, env: Any, thing: Any, grid: OccupancyGrid | None = None, settings: Settings = None
     ) -> None:
-        lidar = thing.lidar
-        error = DEVIATIONS * lidar.std if lidar is not None and lidar.noise else 0.01
-        own = {"period": env.step_time, "range_error": error}
-        own["goal_tolerance"] = thing.info.goal_threshold
-        self.navigator = Navigator(
-            grid or map_of(env), robot_of(thing), configured("default", own | dict(settings or {}))
-        )
-        self._env, self._thing, self._goal = env, thing, None
+        robot = robot_of(thing)
+        own = {"period": env.step_time, "goal_tolerance": thing.info.goal_threshold}
+        own["range_error"] = DEVIATIONS * thing.lidar.std if thing.lidar.noise else 0.01
+        config = configured("default", {**own, **(settings or {})})
+        self.navigator = Navigator(grid or map_of(env), robot, config)
+        self._env, self._thing = env, thing
+        self._goal: tuple[float, ...] | None = None
 
     def command(self) -> Twist:
         """The command of the next step; zero without a goal."""
         thing, now = self._thing, float(self._env.time)
         heading = 3 if thing.arrive_mode == "state" else 2
-        goal = None if thing.goal is None else tuple(map(float, thing.goal[:heading, 0]))
+        goal = None if thing.goal is None else tuple(thing.goal[:heading, 0].tolist())
         if goal != self._goal:
             self._goal = goal
             self.navigator.set_goal([] if goal is None else Goal(*goal))
@@ -123,13 +107,14 @@ class Driver:
 class DynastarBehavior:
     """The behaviour ``dynastar``; it begins anew after ``env.reset()``."""
 
-    def __init__(self, info: Any, settings: Mapping[str, Any] | None = None, **more: Any) -> None:
+    def __init__(self, info: Any, settings: Settings = None, **more: Any) -> None:
         self.driver: Driver | None = None
         self._settings, self._last = settings, 0.0
 
     def __call__(self, ego_object: Any, **more: Any) -> npt.NDArray[np.float64]:
+        """Velocity (2, 1) of the next step."""
         env = ego_object._env  # ir-sim tells a behaviour no time, and nothing of its world
         if self.driver is None or env.time < self._last:
             self.driver = Driver(env, ego_object, settings=self._settings)
         self._last = env.time
-        return np.array(self.driver.command(), dtype=np.float64).reshape(2, 1)
+        return np.array([self.driver.command()], dtype=np.float64).T

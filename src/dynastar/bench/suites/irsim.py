@@ -1,31 +1,38 @@
 """Suite irsim: missions in ir-sim (extra ``irsim``) among its RVO walkers and its clutter.
 
-Mission n has the (n mod 4)-th of ``KINDS``, in a hall of 12 m by 12 m that a robot of 1 m/s crosses. Clutter
-and walkers are placed by ir-sim, from the seed ``1000 * seed + n``; walkers wander from one random
-place to the next, and avoid each other, the clutter and the robot by RVO. The robot sees them by ir-sim's
-lidar alone. ir-sim steps at 0.1 s, moves by explicit Euler steps, gives scans without delay and executes
-commands at once. Its own collision flag decides on contacts: shapes that overlap at the end of a step.
-Walkers that touch something stop for good. A mission whose clutter leaves no way is left out.
+Mission n has the (n mod 4)-th of ``KINDS``, in a hall of 12 m by 12 m that the robot crosses at 1 m/s.
+ir-sim places clutter and walkers, from the seed ``1000 * seed + n``. Walkers wander from one random place
+to the next and avoid each other, the clutter and the robot by RVO. The robot has ir-sim's lidar alone.
+
+ir-sim steps at 0.1 s, moves by explicit Euler steps, gives scans without delay and executes commands at
+once. Its own collision flag decides on contacts: shapes that overlap at the end of a step. Walkers that
+touch something stop for good. A mission whose clutter leaves no way is left out.
 """
 
+import contextlib
+import sys
 import tempfile
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-import irsim
 import numpy as np
 import yaml
 
-from dynastar.adapters.irsim import DEVIATIONS, map_of, robot_of
 from dynastar.bench import driven
 from dynastar.bench.bound import time_bound
 from dynastar.bench.controllers import controller_named
 from dynastar.bench.missions import Mission, Options, endless
-from dynastar.bench.suites.irsim_world import IrSimWorld
 from dynastar.geometry import Goal
 from dynastar.simulation import Scenario, run
+
+with contextlib.redirect_stdout(sys.stderr):  # ir-sim prints which windows it cannot open
+    import irsim
+
+    from dynastar.adapters.irsim import DEVIATIONS, map_of, robot_of
+    from dynastar.bench.suites.irsim_world import IrSimWorld
 
 DEFAULT_MISSIONS = 40
 QUICK_MISSIONS = 8
@@ -33,7 +40,8 @@ QUICK_MISSIONS = 8
 COMPARABLE = "The worlds are this suite's own: no published figure is comparable."
 
 
-class Kind(NamedTuple):
+@dataclass(frozen=True)
+class Kind:
     """How many walkers and how many pieces of clutter a world has."""
 
     walkers: int

@@ -12,6 +12,7 @@ from dynastar.geometry import Pose2D, Twist
 from dynastar.navigator import RobotState
 from dynastar.scan import LaserScan
 from dynastar.simulation import Scenario, World
+from dynastar.simulation.movers import Movers
 from dynastar.simulation.world import RESTING
 
 
@@ -23,6 +24,10 @@ class IrSimWorld(World):
         self._walkers = [thing for thing in env.obstacle_list if not thing.static]
         env.set_random_seed(seed)
         super().__init__(scenario, start, seed)
+
+    def _set_movers(self, movers: Movers) -> None:
+        """Takes ir-sim's walkers for the movers."""
+        super()._set_movers(movers)
         self.mover_radii = np.array([thing.radius for thing in self._walkers], dtype=np.float64)
 
     @property
@@ -68,5 +73,4 @@ class IrSimWorld(World):
         shapes = [thing.geometry for thing in self._env.obstacle_list]
         self.clearance = float(np.min(shapely.distance(robot.geometry, shapes), initial=math.inf))
         if robot.collision:
-            at_rest = math.hypot(*twist) < RESTING
-            self.contact = "resting" if at_rest else "moving"
+            self.clearance, self.contact = 0.0, "resting" if self.resting else "moving"
