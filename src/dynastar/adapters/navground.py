@@ -20,8 +20,7 @@ from dynastar.navigator import Navigator, RobotState, configured
 from dynastar.robot import Footprint, Lidar, Limits, Robot
 from dynastar.scan import LaserScan
 
-REVERSE = 0.3  # m/s, the largest speed backwards
-FOR_SPEED = 0.8  # of the wheels' speed, at most; the rest is for turning
+REVERSE, FOR_SPEED = 0.3, 0.8  # at most: m/s backwards; of the wheels' speed, without turning
 FARTHEST = 20.0  # m ahead, at most, to a goal in a target's direction
 BORDER, RESOLUTION = 10.0, 0.05  # m, of the map round position and goal
 JUMP = 1.0  # m in a step, from which on a lattice has moved the agent
@@ -50,8 +49,8 @@ def scan_of(state: SensingState, stamp: float) -> LaserScan:
 
 def lidar_of(scan: LaserScan) -> Lidar:
     """The Lidar that such a scan comes from."""
-    beams, round_about = len(scan.ranges), scan.full_circle
-    fov = math.tau if round_about else scan.angle_increment * (beams - 1)
+    beams = len(scan.ranges)
+    fov = math.tau if scan.full_circle else scan.angle_increment * (beams - 1)
     return Lidar(beams, fov, 0.0, scan.range_max, theta=scan.angle_min + 0.5 * fov)
 
 
@@ -72,8 +71,7 @@ class DynastarBehavior(Behavior, name="Dynastar"):  # type: ignore[call-arg, mis
         super().__init__(kinematics, radius)
         self.settings: Mapping[str, Any] = {}
         self.navigator: Navigator | None = None
-        self.accelerations = (1.0, 3.0)
-        self._state, self._time = SensingState(), 0.0
+        self.accelerations, self._time, self._state = (1.0, 3.0), 0.0, SensingState()
         self._goal: Goal | None = None
         self._shift = self._last = np.zeros(2)
 
@@ -87,9 +85,8 @@ class DynastarBehavior(Behavior, name="Dynastar"):  # type: ignore[call-arg, mis
         if self.navigator is not None and math.dist(here, self._last) > JUMP:
             self._shift = self._shift + self._last - here  # a lattice has moved the agent
         self._last = here
-        x, y = (here + self._shift).tolist()
+        (x, y), scan = (here + self._shift).tolist(), scan_of(self._state, self._time)
         pose = Pose2D(x, y, self.pose.orientation)
-        scan = scan_of(self._state, self._time)
         navigator = self._aim(pose, scan, time_step)
         command = navigator.command(RobotState(self._time, pose, twist_of(self)), scan)
         self._time += time_step
@@ -103,8 +100,8 @@ class DynastarBehavior(Behavior, name="Dynastar"):  # type: ignore[call-arg, mis
             goal = Goal(x, y, target.orientation and wrap_angle(target.orientation))
         elif target.direction is None:
             goal = None
-        elif goal is None or math.dist(goal[:2], pose[:2]) < 0.5 * FARTHEST:
-            goal = Goal(*map(float, pose[:2] + FARTHEST * np.asarray(target.direction)))
+        elif np.dot(np.subtract((goal or pose)[:2], pose[:2]), target.direction) < 0.5 * FARTHEST:
+            goal = Goal(*(pose[:2] + FARTHEST * target.direction).tolist())
         if self.navigator is not None and goal == self._goal:
             return self.navigator
         grid, self._goal = free_map(pose, goal or Goal(*pose)), goal
@@ -120,5 +117,5 @@ class DynastarBehavior(Behavior, name="Dynastar"):  # type: ignore[call-arg, mis
 def free_map(pose: Pose2D, goal: Goal) -> OccupancyGrid:
     """A map without obstacles round a pose and a goal: navground's agents have none."""
     low, high = np.minimum(pose[:2], goal[:2]) - BORDER, np.maximum(pose[:2], goal[:2]) + BORDER
-    shape = np.ceil((high - low) / RESOLUTION).astype(int)[::-1]
-    return OccupancyGrid.from_occupied(np.zeros(shape, bool), RESOLUTION, *low.tolist())
+    occupied = np.zeros(np.ceil((high - low) / RESOLUTION).astype(int)[::-1], dtype=bool)
+    return OccupancyGrid.from_occupied(occupied, RESOLUTION, *low.tolist())

@@ -81,18 +81,18 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
 
 def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
     """Drives a mission in navground, and the same with navground's behaviors."""
-    watched = Watched(make_world(mission, options))
+    watched = Watched(make_world(mission, options), STEP)
     asked = driven.asked(_scenario(mission, options, watched.world), options, repeat)
     episode = run(
         asked,
         navigator=controller_named(options.controller),
         trace=options.observe is not None,
-        make_world=partial(NavgroundWorld, watched=watched, step=STEP),
+        make_world=partial(NavgroundWorld, watched=watched),
     )
     name, others = names_of(mission)
     row = driven.row_of_episode(episode, asked, group=name)
     beside = {
-        behavior: drive_agent(Watched(make_world(mission, options, behavior)), asked, STEP)
+        behavior: drive_agent(Watched(make_world(mission, options, behavior), STEP), asked)
         for behavior in BEHAVIORS
     }
     row |= {"others": others, **watched.facts(), "beside": beside}

@@ -42,17 +42,17 @@ class Watched:
     In a corridor that repeats itself, the position goes on where navground takes the agent back.
     """
 
-    def __init__(self, world: Any) -> None:
-        world.update_dry(0.0)  # the first scan
-        self.world, self.agent, self.time = world, world.agents[0], 0.0
+    def __init__(self, world: Any, step: float) -> None:
+        world.update_dry(step, advance_time=False)  # the first scan
+        self.world, self.agent, self.time, self.period = world, world.agents[0], 0.0, step
         self.position: Floats = self.agent.position.astype(np.float64)
         self._lattice = world.get_lattice(0)
         self._efficacies: list[float] = []
 
-    def step(self, duration: float) -> None:
+    def step(self) -> None:
         """Lets one of navground's steps pass."""
-        self.world.update(duration)
-        self.time = round(self.time + duration, 6)
+        self.world.update(self.period)
+        self.time = round(self.time + self.period, 6)
         self.position = self.near(self.agent.position, self.position)
         self._efficacies.append(self.agent.behavior.efficacy)
 
@@ -79,12 +79,12 @@ class Watched:
         return {"efficacy": efficacy, "deadlock": bool(stuck)}
 
 
-def drive_agent(watched: Watched, scenario: Scenario, step: float) -> dict[str, Any]:
+def drive_agent(watched: Watched, scenario: Scenario) -> dict[str, Any]:
     """Lets an agent of navground's own drive to the scenario's goal, and says how that ended."""
     goal, tolerance, outcome = scenario.goals[-1], scenario.goal_tolerance, "timeout"
     across = 0.0 if watched.world.walls else 1.0  # a corridor's agents keep no place across it
     while watched.time < scenario.time_limit - 1e-6 and outcome == "timeout":
-        watched.step(step)
+        watched.step()
         dx, dy = (watched.position - goal[:2]).tolist()
         if watched.contact:
             outcome = "contact"
@@ -97,10 +97,8 @@ def drive_agent(watched: Watched, scenario: Scenario, step: float) -> dict[str, 
 class NavgroundWorld(World):
     """The world of a navground agent with the behavior ``Told``; ``movers`` are the other agents."""
 
-    def __init__(
-        self, scenario: Scenario, start: Pose2D, seed: int, watched: Watched, step: float
-    ) -> None:
-        self._watched, self._step = watched, step
+    def __init__(self, scenario: Scenario, start: Pose2D, seed: int, watched: Watched) -> None:
+        self._watched = watched
         watched.world.seed = seed  # of the lidar's noise
         super().__init__(scenario, start, seed)
 
@@ -144,9 +142,9 @@ class NavgroundWorld(World):
         """Lets navground make as many steps as the duration holds, at the same command."""
         watched = self._watched
         watched.agent.behavior.command = command
-        for _ in range(round(duration / self._step)):
+        for _ in range(round(duration / watched.period)):
             if not self.contact:
-                watched.step(self._step)
+                watched.step()
                 self.time = watched.time
                 x, y = watched.position.tolist()
                 self.pose = Pose2D(x, y, watched.agent.orientation)
