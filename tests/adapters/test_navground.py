@@ -16,7 +16,7 @@ from navground.sim import Agent, World
 from navground.sim.state_estimations import LidarStateEstimation
 from navground.sim.tasks import DirectionTask, GoToPoseTask, WaypointsTask
 
-from dynastar.adapters.navground import DynastarBehavior, lidar_of, robot_of, scan_of
+from dynastar.adapters.navground import DynastarBehavior, lidar_of, robot_of, scan_of, twist_of
 from dynastar.robot import Lidar
 
 
@@ -94,6 +94,19 @@ def test_an_agent_drives_round_an_obstacle_to_its_point_and_the_next():
     assert reached == 2
     assert agent.last_collision_time < 0.0
     assert agent.task.done()
+
+
+def test_a_command_is_found_with_the_state_and_the_scan_of_its_moment():
+    world, agent = world_with(WaypointsTask([(3.0, 0.0)], False, 0.3))
+    world.add_wall(LineSegment((4.0, -9.0), (4.0, 9.0)))
+    behavior, commands = agent.behavior, []
+    for _ in range(15):
+        world.update(0.1)
+        scan = scan_of(behavior.get_environment_state(), 0.0)
+        assert behavior.position[0] + np.nanmin(scan.readings()) == pytest.approx(4.0, abs=1e-3)
+        assert twist_of(behavior).v == pytest.approx(commands[-1] if commands else 0.0, abs=1e-3)
+        commands.append(float(agent.twist.velocity[0]))
+    assert commands[-1] > 0.9
 
 
 def drive(world, agent, points, seconds):

@@ -84,6 +84,17 @@ def test_the_robot_does_as_it_is_told_and_others_move():
     assert np.hypot(*(made.movers - before).T).max() > 0.3
 
 
+def test_speeds_and_scans_are_those_of_now():
+    made, _ = world(0, (-9.0, 0.0), (-7.0, 0.0))
+    for v in (0.2, 0.5, 0.4):
+        made.step(Twist(v, 0.1), 0.1)
+        assert made.twist == pytest.approx((v, 0.1), abs=1e-3)
+        scan = made.scan()
+        assert scan.stamp == made.time
+        gap = float(np.nanmin(scan.readings()))
+        assert gap == pytest.approx(math.dist(made.pose[:2], (-7.0, 0.0)) - 0.5, abs=0.04)
+
+
 def test_the_corridor_goes_on_where_navground_takes_the_agent_back():
     made, watched = world(1, (13.7, 2.0))
     for _ in range(10):

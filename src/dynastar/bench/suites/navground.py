@@ -57,7 +57,7 @@ STEP, TIME_LIMIT = 0.1, 60.0  # s
 RUN = 10.0  # m that a robot drives in the corridor
 RANGE, DEVIATION = 8.0, 0.01  # m, of the lidar
 ACCEL, OMEGA_ACCEL = 1.0, 3.0  # m/s2 and rad/s2 of the robot
-BORDER, RESOLUTION = 3.0, 0.05  # m, of the map
+BORDER, RESOLUTION = 8.0, 0.05  # m, of the map
 
 missions = endless
 

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 from navground.core import Behavior, Frame, Kinematics, SensingState, Twist2
 
-from dynastar.adapters.navground import scan_of, twist_of
+from dynastar.adapters.navground import scan_of
 from dynastar.geometry import Pose2D, Twist
 from dynastar.navigator import RobotState
 from dynastar.scan import LaserScan
@@ -43,7 +43,7 @@ class Watched:
     """
 
     def __init__(self, world: Any, step: float) -> None:
-        world.update_dry(step, advance_time=False)  # the first scan
+        world.update_dry(step, advance_time=False)  # prepares the agents
         self.world, self.agent, self.time, self.period = world, world.agents[0], 0.0, step
         self.position: Floats = self.agent.position.astype(np.float64)
         self._lattice = world.get_lattice(0)
@@ -66,11 +66,21 @@ class Watched:
 
     @property
     def contact(self) -> Literal["", "moving", "resting"]:
-        """What the first collision of the agent was, if it had one, by its present speeds."""
+        """What the first collision of the agent was, if it had one, by its last command.
+
+        navground stops agents that collide.
+        """
         if self.agent.last_collision_time < 0.0:
             return ""
-        at_rest = all(abs(speed) < RESTING for speed in twist_of(self.agent.behavior))
-        return "resting" if at_rest else "moving"
+        command = self.agent.get_last_cmd(Frame.relative)
+        speeds = (*command.velocity.tolist(), command.angular_speed)
+        return "resting" if all(abs(speed) < RESTING for speed in speeds) else "moving"
+
+    @property
+    def twist(self) -> Twist:
+        """The agent's speeds; its behavior has those of the step before."""
+        twist = self.agent.twist.relative(self.agent.pose)
+        return Twist(float(twist.velocity[0]), twist.angular_speed)
 
     def facts(self) -> dict[str, Any]:
         """navground's efficacy (mean over the steps) and whether the agent is in a deadlock."""
@@ -111,7 +121,7 @@ class NavgroundWorld(World):
     @property
     def twist(self) -> Twist:
         """The robot's speeds."""
-        return twist_of(self._watched.agent.behavior)
+        return self._watched.twist
 
     @property
     def wheels(self) -> Twist:
@@ -131,8 +141,10 @@ class NavgroundWorld(World):
         return np.array([watched.near(agent.position, watched.position) for agent in others])
 
     def scan(self) -> LaserScan:
-        """The present scan of navground's lidar."""
-        return scan_of(self._watched.agent.behavior.state, self.time)
+        """The present scan of navground's lidar, which looks before each step, and so once more."""
+        agent, world = self._watched.agent, self._watched.world
+        agent.state_estimation.update(agent, world, agent.behavior.state)
+        return scan_of(agent.behavior.state, self.time)
 
     def sensed_state(self) -> RobotState:
         """The true state."""
