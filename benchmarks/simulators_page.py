@@ -19,7 +19,7 @@ from PIL import Image
 from scoreboard_page import DOCS, PAGE, bench, filled
 
 SHOWN = {"irsim": (3, "ir-sim"), "navground": (5, "navground")}  # mission and name of the picture
-SIZE, COLOURS = (900, 900), 64
+SIZE, COLOURS = (900, 900), 200
 
 Row = dict[str, Any]
 

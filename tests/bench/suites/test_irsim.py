@@ -69,6 +69,18 @@ def test_the_robot_moves_as_ir_sim_says_and_walkers_move_too():
     assert moved.max() > 0.5
 
 
+def test_speeds_and_scans_are_those_of_now():
+    made = world(2)
+    gaps = []
+    for v in (0.1, 0.2, 0.3):
+        made.step(Twist(v, 0.0), 0.1)
+        state, scan = made.sensed_state(), made.scan()
+        assert (state.pose, state.twist) == (made.pose, (v, 0.0))
+        assert state.stamp == scan.stamp == made.time
+        gaps.append(float(np.nanmin(scan.readings())) - 0.25 - made.clearance)
+    assert gaps == pytest.approx([0.0] * 3, abs=0.05)
+
+
 def test_a_period_of_two_steps_drives_both():
     made = world(0)
     made.step(Twist(0.1, 0.0), 0.2)
