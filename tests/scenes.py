@@ -53,7 +53,8 @@ def field_of(closed):
 
 def closed_space(closed):
     """Closed cells, in each of which a hit lies at the centre."""
-    return Closed(field_of(closed), closed, np.zeros(closed.shape, BOX))
+    hits = np.zeros(closed.shape, BOX)
+    return Closed(field_of(closed), closed, hits, lower_bounds(closed.view(np.uint8), CELL))
 
 
 def boxes_of(closed):

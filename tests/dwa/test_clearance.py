@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from dynastar.clearance import lower_bounds
 from dynastar.dwa import body_of
 from dynastar.dwa.clearance import (
     EXACT_WITHIN,
@@ -99,11 +100,14 @@ def test_the_least_clearance_is_that_to_the_nearest_cell_where_it_is_small(name,
 def random_space(random):
     """Closed cells of which some are occupied, with boxes of hits in them."""
     closed = scattered(random, random.choice([0.0005, 0.004, 0.03]))
+    row, column = random.integers(0, len(closed) - 30, 2)
+    closed[row : row + 30, column : column + random.integers(1, 30)] = True
     hits = np.zeros(closed.shape, BOX)
     for low, high in (("low_x", "high_x"), ("low_y", "high_y")):
         ends = np.sort(random.uniform(-0.5 * CELL, 0.5 * CELL, (2, *closed.shape)), axis=0)
         hits[low], hits[high] = ends
-    return Closed(field_of(closed), closed & (random.random(closed.shape) < 0.7), hits)
+    occupied = closed & (random.random(closed.shape) < 0.7)
+    return Closed(field_of(closed), occupied, hits, lower_bounds(closed.view(np.uint8), CELL))
 
 
 @given(footprints, st.integers(0, 10**6))

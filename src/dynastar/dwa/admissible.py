@@ -8,6 +8,7 @@ from dynastar.dwa.motion import State, driven, moved, stopping_time
 
 ADMISSIBLE, NO_STOP, MOVING, HIDDEN = range(4)
 CHECK_PERIOD = 0.1  # s between two checks for moving obstacles during a stop
+FAR_ENOUGH = 0.2  # m up to which a clearance is looked at exactly
 ROUNDING = 1e-6  # m of clearance that rounding may take
 NEARER = 1e-3  # m by which a gap has to shrink to count
 
@@ -23,11 +24,12 @@ def keeps_clear(closed, body, margin, start, pose, arc):
     sweep = abs(length) + body.circumscribed * abs(angle)
     smallest = 0.25 * closed.distance.resolution
     fraction = 0.0
-    slack = clearance_slack(closed, body, margin, start, pose)
+    slack = clearance_slack(closed, body, margin, start, pose, min(sweep, FAR_ENOUGH))
     while -ROUNDING <= slack < (1.0 - fraction) * sweep and sweep > 0.0 and fraction < 1.0:
         fraction = min(1.0, fraction + max(slack, smallest) / sweep)
         at = moved(pose, fraction * length, fraction * angle)
-        slack = clearance_slack(closed, body, margin, start, at)
+        left = (1.0 - fraction) * sweep
+        slack = clearance_slack(closed, body, margin, start, at, min(left, FAR_ENOUGH))
     return slack >= -ROUNDING
 
 

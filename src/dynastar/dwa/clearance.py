@@ -11,6 +11,7 @@ from dynastar.dwa.motion import Pose
 from dynastar.field import Field, bilinear, is_inside
 
 HALF_DIAGONAL = 1.0 / math.sqrt(2.0)  # of a cell
+BEHIND = 3.5  # cells, besides the margin, behind which a closed cell is deep inside
 EXACT_WITHIN = 0.3  # m between obstacle and footprint, beyond which its circle stands for it
 
 
@@ -18,12 +19,14 @@ class Closed(NamedTuple):
     """Cells that were not observed free: the ``distance`` to the nearest, and the hits in them.
 
     ``hits`` (rows, columns) are the boxes of the hits in the cells that are ``occupied``, metres from
-    a cell's centre. In the others an obstacle may be up to half a diagonal from the centre.
+    a cell's centre. In the others an obstacle may be up to half a diagonal from the centre. ``depth`` is
+    the distance (m) of a closed cell to the nearest that is not, or less.
     """
 
     distance: Field
     occupied: npt.NDArray[np.bool_]
     hits: npt.NDArray[Any]
+    depth: npt.NDArray[np.float32]
 
 
 class Box(NamedTuple):
@@ -135,43 +138,65 @@ def body_box_distance(body, pose, box):
 
 
 @inner
+def slack_to(closed, all_of_it, body, margin, start, pose, enough):
+    """Slack (m) of the constraint of ``clearance_slack``, of all closed cells or those not deep inside.
+
+    A box deep inside is farther away, by the margin, than that of some closed cell before it.
+    Returns the slack, up to ``enough``, and whether the footprint reaches into one of the boxes.
+    """
+    field, a = closed.distance, closed.distance.resolution  # no box reaches further from its centre
+    rows, columns = field.values.shape
+    reach, deep = body.circumscribed + margin + enough + a, margin + BEHIND * a
+    first = max(0, int((pose.y - reach - field.y0) / a))
+    last = min(rows - 1, int((pose.y + reach - field.y0) / a))
+    low = max(0, int((pose.x - reach - field.x0) / a))
+    high = min(columns - 1, int((pose.x + reach - field.x0) / a))
+    least, inside = enough, False
+    for row in range(first, last + 1):
+        y, column = field.y0 + (row + 0.5) * a, low
+        while column <= high:
+            to_closed = field.values[row, column]
+            if to_closed > 0.0:  # no cell is closed nearer than that
+                column += max(1, int(to_closed / a))
+                continue
+            at = column
+            column += 1
+            if closed.depth[row, at] > deep and not all_of_it:
+                continue
+            x = field.x0 + (at + 0.5) * a
+            far = body.circumscribed + a + margin + least
+            if (x - pose.x) ** 2 + (y - pose.y) ** 2 >= far * far:
+                continue
+            if body_distance(body, pose, x, y) - a - margin >= least:
+                continue
+            box = closed_box(closed, row, at)
+            near = body_box_distance(body, pose, box)
+            if near - margin >= least:
+                continue
+            inside |= near <= 0.0
+            allowed = min(margin, body_box_distance(body, start, box))
+            least = min(least, near - allowed)
+            if least < -1e-6:
+                return least, inside
+    return least, inside
+
+
+@inner
 def clearance_slack(closed, body, margin, start, pose, enough=0.0):
     """Slack (m) of the clearance constraint at ``pose``, negative if violated.
 
     The constraint: the footprint keeps ``margin`` from the box of every closed cell, or its distance
     at ``start`` if that was smaller. The slack is exact only up to ``enough`` (m), a cell at least.
+    Cells deep inside count only where the footprint reaches into closed space.
     """
-    field, a = closed.distance, closed.distance.resolution  # no box reaches further from its centre
+    field, a = closed.distance, closed.distance.resolution
     enough = max(enough, a)
-    distance = distance_at(field, pose.x, pose.y) - body.circumscribed - a - margin
-    if distance >= enough:
-        return distance
-    rows, columns = field.values.shape
-    reach = body.circumscribed + margin + enough + a
-    first = max(0, int((pose.y - reach - field.y0) / a))
-    last = min(rows - 1, int((pose.y + reach - field.y0) / a))
-    low = max(0, int((pose.x - reach - field.x0) / a))
-    high = min(columns - 1, int((pose.x + reach - field.x0) / a))
-    least = enough
-    for row in range(first, last + 1):
-        column = low
-        while column <= high:
-            to_marked = field.values[row, column]
-            if to_marked > 0.0:  # no cell is marked nearer than that
-                column += max(1, int(to_marked / a))
-                continue
-            box = closed_box(closed, row, column)
-            column += 1
-            rough = box_distance(box, pose.x, pose.y) - body.circumscribed
-            if rough - margin >= least:
-                continue
-            near = body_box_distance(body, pose, box)
-            if near - margin >= least:
-                continue
-            allowed = min(margin, body_box_distance(body, start, box))
-            least = min(least, near - allowed)
-            if least < -1e-6:
-                return least
+    distance = distance_at(field, pose.x, pose.y)
+    if distance - body.circumscribed - a - margin >= enough:
+        return distance - body.circumscribed - a - margin
+    least, inside = slack_to(closed, False, body, margin, start, pose, enough)
+    if least >= -1e-6 and (inside or distance <= 0.0):
+        least, inside = slack_to(closed, True, body, margin, start, pose, enough)
     return least
 
 

@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from dynastar.compiled import inner, njit
 from dynastar.dwa.admissible import keeps_clear
 from dynastar.dwa.clearance import Closed
@@ -20,7 +22,9 @@ def has_room_to_turn(scene, rules, start, pose, angle, need):
     """
     spare, short_by = need
     angle = math.copysign(max(abs(angle) - short_by, 0.0), angle)
-    occupied = Closed(scene.distance_to_obstacle, scene.closed.occupied, scene.closed.hits)
+    known = scene.distance_to_obstacle
+    not_deep = np.zeros(known.values.shape, np.float32)
+    occupied = Closed(known, scene.closed.occupied, scene.closed.hits, not_deep)
     margin = scene.margin_to_closed + spare
     return keeps_clear(occupied, rules.body, margin, start, pose, (0.0, angle))
 

@@ -125,7 +125,10 @@ class Sensing:
             hidden = hidden._replace(speed=0.0)  # nobody is where it drives
         return View(
             closed=Closed(
-                Field(local.field, x0, y0, resolution), local.states == SEEN_OCCUPIED, local.boxes
+                Field(local.field, x0, y0, resolution),
+                local.states == SEEN_OCCUPIED,
+                local.boxes,
+                local.depth,
             ),
             distance_to_obstacle=Field(obstacles, x0, y0, resolution),
             hidden=hidden,

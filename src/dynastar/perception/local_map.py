@@ -54,7 +54,7 @@ class LocalMap:
         self.boxes = np.full((n, n), whole_cell(resolution))
         self.states = np.zeros((n, n), np.uint8)
         self.open = np.zeros((n, n), np.uint8)
-        self.field = np.zeros((n, n), np.float32)
+        self.field, self.depth = np.zeros((n, n), np.float32), np.zeros((n, n), np.float32)
 
     @property
     def origin(self) -> tuple[float, float]:
@@ -133,8 +133,9 @@ class LocalMap:
         kernels.mark_disc(self.hit_at, self.frame, (x, y, radius), kernels.NEVER)
 
     def update(self, now: float, barred: Mask, trusted: Mask | None = None) -> None:
-        """Brings ``states``, ``open`` and ``field`` (metres between cell centres) up to date.
+        """Brings ``states``, ``open``, ``field`` and ``depth`` up to date.
 
+        ``field`` and ``depth`` are metres between centres: to the nearest closed, and open cell.
         ``barred`` (n, n) are keep-out cells, which are not open though they may be free. ``trusted``
         (n, n) are open while unseen.
         """
@@ -143,6 +144,7 @@ class LocalMap:
         if trusted is not None:
             self.open[INSIDE] |= (trusted & (self.states == UNSEEN))[INSIDE]
         self.field = lower_bounds(self.open, self.resolution)  # the rim is closed
+        self.depth = lower_bounds((self.open == 0).view(np.uint8), self.resolution)
 
 
 def whole_cell(resolution: float) -> npt.NDArray[Any]:

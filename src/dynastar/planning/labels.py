@@ -43,6 +43,24 @@ def with_room(array: Ints, needed: int) -> Ints:
     return larger
 
 
+@njit(cache=True, inline="always")
+def is_closed(label: int, stamp: int) -> bool:
+    """Whether a label says that the search of that stamp closed its node."""
+    return (int(label) & (STAMP_BITS | 1)) == stamp << STAMP_SHIFT | 1
+
+
+@njit(cache=True)
+def closed_nodes(labels: Ints, stamp: int) -> npt.NDArray[np.int32]:
+    """The nodes (m,) that the search of that stamp closed, in order."""
+    found, count = np.empty(1024, np.int32), 0
+    for node in range(labels.size):
+        if is_closed(labels[node], stamp):
+            found = with_room(found, count + 1)
+            found[count] = node
+            count += 1
+    return found[:count]
+
+
 @njit(cache=True)
 def trace(labels: Ints, stamp: int, width: int, goal: int) -> tuple[npt.NDArray[np.int32], float]:
     """The way (n, 2) that a search found to ``goal``, in unpadded (row, column), and its length.

@@ -194,21 +194,21 @@ class SearchGrid:
         """Lengths in cells, [rows, columns], of the shortest ways from a cell; inf if none."""
         start = self._inside(start_rc, "start")
         self._run(start, None, "dijkstra", HeuristicConfig())
-        lengths = (self._labels >> labels.G_SHIFT) / labels.STRAIGHT
-        lengths[~self._closed()] = np.inf
+        nodes, lengths = self._closed(), np.full(self._near.size, np.inf)
+        lengths[nodes] = (self._labels[nodes] >> labels.G_SHIFT) / labels.STRAIGHT
         return lengths.reshape(self._near.shape)[1:-1, 1:-1]
 
     def way_to(self, cell: Cell) -> Cells:
         """The way (n, 2) to a cell that the last flood expanded; NoPath for any other."""
         node = self._node(self._inside(cell, "cell"))
         flooded = self._stamp > 0 and self._last[0] is self._labels
-        if not flooded or not self._closed()[node]:
+        if not flooded or not labels.is_closed(self._labels[node], self._stamp):
             raise NoPath(f"cell {cell} was not reached by the last flood: expected one that was")
         return self._trace(cell)[0]
 
     def expanded_cells(self) -> Cells:
         """The cells (m, 2) that the last search expanded, row by row."""
-        nodes = np.flatnonzero(self._closed())
+        nodes = self._closed()
         return np.column_stack(np.divmod(nodes, self._width)).astype(np.int32) - np.int32(1)
 
     def _run(
@@ -268,9 +268,9 @@ class SearchGrid:
     def _trace(self, goal: Cell) -> tuple[Cells, float]:
         return labels.trace(self._labels, self._stamp, self._width, self._node(goal))
 
-    def _closed(self) -> npt.NDArray[np.bool_]:
-        known, stamp = self._last
-        return (known & (labels.STAMP_BITS | 1)) == stamp << labels.STAMP_SHIFT | 1
+    def _closed(self) -> npt.NDArray[np.int32]:
+        """The nodes that the last search closed, in order."""
+        return labels.closed_nodes(*self._last)
 
     def _node(self, cell: Cell) -> int:
         return (cell[0] + 1) * self._width + cell[1] + 1
