@@ -17,7 +17,9 @@ class Metrics(NamedTuple):
     ``time`` (s) runs to the tick that first says "arrived", else to the last one. ``length`` (m),
     ``turning_points`` and ``smoothness`` are of the true driven path until rest. ``min_clearance``
     (m) is the smallest true gap between the footprint and anything. A contact ends a mission, so
-    both contact counts are 0 or 1. ``replans`` are the plans after the first, ``recoveries`` the
+    both contact counts are 0 or 1. Where walkers notice the robot late, ``bumps`` counts their touches
+    of a robot that did not move towards them, and ``stops`` how often one stopped for it.
+    ``replans`` are the plans after the first, ``recoveries`` the
     events of that kind. ``command_ms_mean`` and ``command_ms_max`` (ms) are wall time over all
     calls of ``command``: sensing, planning and the first calls, which may compile, included.
     ``smoothness`` is the total variation of the turning rate per metre, ``sum |omega_{i+1} - omega_i|
@@ -33,6 +35,8 @@ class Metrics(NamedTuple):
     min_clearance: float | None
     contacts_moving: int
     contacts_resting: int
+    bumps: int
+    stops: int
     replans: int
     recoveries: int
     command_ms_mean: float | None
@@ -59,6 +63,8 @@ def measure(episode: Episode) -> Metrics:
         min_clearance=float(clearance.min()) if len(clearance) else None,
         contacts_moving=int(episode.contact == "moving"),
         contacts_resting=int(episode.contact == "resting"),
+        bumps=sum(event.kind == "bump" for event in episode.events),
+        stops=sum(event.kind == "stop" for event in episode.events),
         replans=max(len(episode.plans) - 1, 0),
         recoveries=sum(event.kind == "recovery" for event in episode.events),
         command_ms_mean=float(command_ms.mean()) if len(command_ms) else None,

@@ -26,8 +26,18 @@ Result = Mapping[str, Any]
 
 SIGNIFICANT = 0.05
 FEWEST = 6  # pairs that say anything about time: 2 / 2^6 < 0.05
-CONDITIONS = ("preset", "controller", "settings", "ideal")  # by which two results may differ
-COUNTS = ("missions", "succeeded", "contacts_moving", "contacts_resting", "score", "time_ratio")
+CONDITIONS = ("preset", "controller", "settings", "ideal", "attention")
+COUNTS = (
+    "missions",
+    "succeeded",
+    "contacts_moving",
+    "contacts_resting",
+    "bumps",
+    "stops",
+    "score",
+    "time_ratio",
+)
+EARLIER: Mapping[str, Any] = {"attention": "none"}  # of results that do not name a condition
 SHOWN = 10  # numbers in a message
 
 
@@ -103,9 +113,10 @@ def compare_suite(name: str, first: Result, second: Result) -> dict[str, Any]:
     return {
         "missions": len(pairs),
         "conditions": {
-            key: [first.get(key), second.get(key)]
+            key: [a, b]
             for key in CONDITIONS
-            if first.get(key) != second.get(key)
+            for a, b in [[of.get(key, EARLIER.get(key)) for of in (first, second)]]
+            if a != b
         },
         "totals": {key: [first.get(key), second.get(key)] for key in COUNTS},
         "changed": changed,

@@ -65,12 +65,13 @@ def run_mission(
 
 
 def asked(scenario: Scenario, options: Options, repeat: int) -> Scenario:
-    """The scenario with the preset, the seed and the settings that the options ask for."""
+    """The scenario with the preset, seed, settings and attention that the options ask for."""
     return replace(
         scenario,
         preset=cast(Any, options.preset),
         seed=scenario.seed + options.seed + repeat,
         navigator=merged(scenario.navigator, options.settings),
+        attention=options.attention or scenario.attention,
     )
 
 

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, Protocol
 from dynastar.bench.workers import Workers
 from dynastar.errors import DataError
 from dynastar.io.paths import local_path
+from dynastar.simulation.scenario import Attention
 
 
 class Mission(NamedTuple):
@@ -23,6 +24,7 @@ class Options(NamedTuple):
 
     ``settings`` are the navigator's, as nested tables, over the preset's. ``observe`` is called with
     the suite's name and each mission that is driven, its repeat, its episode and its row.
+    ``attention`` is that of scripted walkers, None for the suite's own.
     """
 
     data: Path | None = None
@@ -36,6 +38,7 @@ class Options(NamedTuple):
     controller: str = "navigator"
     settings: Mapping[str, Any] = {}
     quick: bool = False
+    attention: Attention | None = None
     observe: Callable[..., None] | None = None
 
 
@@ -44,7 +47,8 @@ class Suite(Protocol):
 
     A suite that drives also has ``scenario(mission, options, repeat)``, the Scenario of a mission. It
     may have ``QUICK_MISSIONS``, how many missions ``--quick`` runs, ``PUBLISHED``, tuples of a label, a
-    figure in words and the key of its source, and ``COMPARABLE``, what is comparable in a sentence.
+    figure in words and the key of its source, ``COMPARABLE``, what is comparable in a sentence, and
+    ``ATTENTION``, that of its scripted walkers where it is not "none".
     """
 
     @property

@@ -57,6 +57,7 @@ def run_jobs(
     settings = {
         "run": name,
         **{key: getattr(options, key) for key in ("seed", "preset", "ideal", "controller")},
+        "attention": options.attention,
         "settings": options.settings,
         "data": os.path.abspath(options.data or os.environ.get("DYNASTAR_DATA") or "."),
         "version": code_version() + controller_version(options.controller),
@@ -82,6 +83,7 @@ def result_of(
     return {
         "suite": name,
         **{key: getattr(options, key) for key in ("preset", "seed", "ideal", "controller")},
+        "attention": options.attention or getattr(suite, "ATTENTION", "none"),
         "settings": dict(options.settings),
         "wall_s": round(wall, 1),
         "published": [dict(zip(("label", "figure", "source"), p, strict=True)) for p in published],

@@ -114,6 +114,8 @@ def _sums(rows: Sequence[Row]) -> dict[str, Any]:
         "succeeded": success,
         "contacts_moving": moving,
         "contacts_resting": resting,
+        "bumps": sum(row.get("bumps") or 0 for row in rows),
+        "stops": sum(row.get("stops") or 0 for row in rows),
         "timeouts": _count(rows, lambda row: row["outcome"] == "timeout"),
         "errors": _count(rows, lambda row: row["outcome"] == "error"),
         "arrived_interval": wilson(len(arrived), len(rows)),

@@ -3,6 +3,7 @@
 import argparse
 
 PRESETS = ("default", "paper")  # those of dynastar.navigator
+ATTENTIONS = ("late", "none")  # those of dynastar.simulation
 
 
 def add_json(parser: argparse.ArgumentParser) -> None:

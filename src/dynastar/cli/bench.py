@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from dynastar import io
 from dynastar.bench.suites import SUITES, load_suite
-from dynastar.cli.arguments import PRESETS, add_set
+from dynastar.cli.arguments import ATTENTIONS, PRESETS, add_set
 from dynastar.cli.outputs import check_file, make_folder
 from dynastar.cli.parsing import count, path, replayed, seed
 from dynastar.cli.show import as_json, as_table
@@ -75,6 +75,11 @@ def _add_missions(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--preset", choices=PRESETS, default="default")
     parser.add_argument(
         "--ideal", action="store_true", help="without range noise and without latency"
+    )
+    parser.add_argument(
+        "--attention",
+        choices=ATTENTIONS,
+        help="of scripted walkers: late (the default of people and crowd), or none",
     )
     parser.add_argument(
         "--controller",
@@ -238,6 +243,7 @@ def _options(arguments: argparse.Namespace) -> "Options":
         controller=arguments.controller,
         settings=read_settings(arguments.set, arguments.preset),
         quick=arguments.quick,
+        attention=arguments.attention,
         observe=observe,
     )
 
@@ -249,6 +255,7 @@ def _refuse_driving(arguments: argparse.Namespace) -> None:
         "--set": arguments.set,
         "--save-failures": arguments.save_failures is not None,
         "--ideal": arguments.ideal,
+        "--attention": arguments.attention,
     }
     for option in (name for name, given in asked.items() if given):
         raise InputError(f"{option} has no effect: the suite {arguments.suite} drives nothing")

@@ -6,7 +6,7 @@ from dynastar.config import Field
 from dynastar.navigator import NavigatorConfig, Preset
 from dynastar.navigator.config import GoalTolerance, HeadingTolerance, Latency, UnknownSpace
 from dynastar.simulation.imperfections import ControlLoop, Drivetrain, LidarDriver, Odometry
-from dynastar.simulation.scenario import AfterLast
+from dynastar.simulation.scenario import AfterLast, Attention
 
 DEFAULT = NavigatorConfig()
 
@@ -44,6 +44,10 @@ class ScenarioTable(NamedTuple):
     loop: ControlLoop = ControlLoop()
     obstacles: Any = None
     movers: Any = None
+    attention: Annotated[
+        Attention,
+        Field("late: movers stop in front of a robot that rests or moves away, and go round it"),
+    ] = "none"
     navigator: Any = None
 
 

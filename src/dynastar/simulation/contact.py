@@ -13,6 +13,8 @@ from dynastar.robot import Footprint
 
 Floats = npt.NDArray[np.float64]
 
+RESTING = 0.02  # m/s and rad/s under which a contact happens at rest
+
 
 class Solids:
     """All that stands: a map's occupied cells, its border, and polygons (k, 2) in metres.

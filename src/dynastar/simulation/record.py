@@ -31,7 +31,7 @@ class Recorder:
         self.plans: list[PlanRecord] = []
         self.events: list[EventRecord] = []
         self._plan_id: int | None = None
-        self._recoveries = 0
+        self._recoveries = self._bumps = self._stops = 0
         self._frame = scenario.grid.frame
 
     def tick(self, command: Twist, command_ms: float, status: Any) -> None:
@@ -67,6 +67,12 @@ class Recorder:
 
     def _row(self, command: Twist, command_ms: float, state: str, limit: str) -> None:
         world = self._world
+        if world.late is not None:
+            for _ in range(world.late.stops - self._stops):
+                self.event("stop", "a walker stopped for the robot")
+            for _ in range(world.late.bumps - self._bumps):
+                self.event("bump", "a walker touched the robot, which did not move towards it")
+            self._stops, self._bumps = world.late.stops, world.late.bumps
         self._rows.append(
             (world.time, *world.pose, *world.twist, *command, world.clearance, command_ms)
         )
@@ -137,7 +143,7 @@ def described(scenario: Scenario, seed: int) -> dict[str, Any]:
     Movers' keys are left out where ``source`` says what the scenario was read from.
     """
     names = ("name", "start", "goals", "noise", "latency", "goal_tolerance", "heading_tolerance")
-    more = ("time_limit", "unknown", "preset", "navigator", "source")
+    more = ("time_limit", "unknown", "preset", "navigator", "source", "attention")
     movers = () if scenario.source else tuple(vars(mover) for mover in scenario.movers)
     imperfect = [name for name in PERFECT if getattr(scenario, name) != PERFECT[name]]
     data = {name: plain(getattr(scenario, name)) for name in (*names, *more, *imperfect)}

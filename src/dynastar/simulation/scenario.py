@@ -18,6 +18,7 @@ from dynastar.simulation.imperfections import ControlLoop, Drivetrain, LidarDriv
 Floats = npt.NDArray[np.float64]
 DEFAULT = NavigatorConfig()
 AfterLast = Literal["loop", "back_and_forth", "stay", "vanish"]
+Attention = Literal["none", "late"]
 
 
 @self_checking
@@ -31,7 +32,7 @@ class Noise(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Mover:
-    """A disc that follows keyframes and reacts to nobody.
+    """A disc that follows keyframes, and notices the robot only with the scenario's ``attention``.
 
     ``times`` (k,) s rising, ``points`` (k, 2) m, linear between. After the last key it starts over
     ("loop": from the first key, jumping there), goes back the way it came ("back_and_forth"),
@@ -65,8 +66,9 @@ class Scenario:
     ``start`` is (x, y, heading), heading None for "towards the first point of the path".
     ``obstacles`` are simple polygons (k, 2) in metres that no map has. ``faults`` strike during the
     run; ``drive``, ``odometry``, ``lidar`` and ``loop`` are what hardware does all the time, whatever
-    the navigator is told. ``crowd`` are pedestrians who react to the robot (needs the extra
-    ``pedestrians``). ``navigator`` overrides settings of the preset, as nested tables. ``source`` is
+    the navigator is told. With ``attention`` "late", movers stop in front of a robot that rests or moves
+    away, and go round it (``LateWalkers``). ``crowd`` are pedestrians who react to the robot (needs the
+    extra ``pedestrians``). ``navigator`` overrides settings of the preset, as nested tables. ``source`` is
     what the scenario was read from.
     """
 
@@ -78,6 +80,7 @@ class Scenario:
     world: OccupancyGrid | None = None
     obstacles: tuple[Floats, ...] = ()
     movers: tuple[Mover, ...] = ()
+    attention: Attention = "none"
     crowd: tuple[Pedestrian, ...] = ()
     faults: tuple[Fault, ...] = ()
     noise: Noise = Noise()

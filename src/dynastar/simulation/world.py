@@ -12,7 +12,8 @@ from dynastar.geometry import Pose2D, Twist, wrap_angle
 from dynastar.navigator import RobotState
 from dynastar.robot import Limits, arc
 from dynastar.scan import LaserScan
-from dynastar.simulation.contact import Solids
+from dynastar.simulation.attention import LateWalkers
+from dynastar.simulation.contact import RESTING, Solids
 from dynastar.simulation.crowd import Crowd
 from dynastar.simulation.drivetrain import DriveSimulator
 from dynastar.simulation.lidar import LidarSimulator
@@ -24,7 +25,6 @@ Floats = npt.NDArray[np.float64]
 Contact = Literal["", "moving", "resting"]
 
 SUBSTEP = 0.01  # s, the longest stretch driven at one twist
-RESTING = 0.02  # m/s and rad/s under which a contact happens at rest
 
 
 class Walkers(Protocol):
@@ -44,6 +44,7 @@ class World:
 
     ``drive`` is the simulated drive. ``clearance`` is the smallest gap between footprint and anything since
     the last ``step`` began; ``contact`` says what a touch was, and the world then stands still.
+    ``late`` are the movers of a scenario with ``attention = "late"``, whose bumps are no contact.
     ``walkers`` replace the scenario's crowd.
     Raises ScenarioError for obstacles, movers or a seed that no world can be made of.
     """
@@ -62,11 +63,13 @@ class World:
         senses = np.random.SeedSequence(seed).spawn(3)
         self._scenario, self._robot = scenario, scenario.robot
         self._solids = Solids(grid, scenario.obstacles)
+        self.time, self.pose = 0.0, start
         self._crowd = walkers
         if walkers is None and scenario.crowd:
             footprint = scenario.robot.footprint
             self._crowd = Crowd(scenario.crowd, grid, scenario.obstacles, footprint, seed)
         self._set_movers(Movers(scenario.movers))
+        self.late = self._late_walkers(scenario)
         self._lidar = LidarSimulator(
             scenario.robot.lidar,
             grid,
@@ -83,7 +86,6 @@ class World:
             scenario.latency,
             np.random.default_rng(senses[2]),
         )
-        self.time, self.pose = 0.0, start
         self.contact: Contact = ""
         self._solid_gap, self._travelled = 0.0, 0.0
         self.clearance = math.inf
@@ -107,7 +109,7 @@ class World:
     @property
     def movers(self) -> Floats:
         """Where movers and pedestrians are now, (m, 2) metres, NaN for those that are not there."""
-        scripted = self._movers.at(self.time)
+        scripted = (self.late or self._movers).at(self.time)
         return scripted if self._crowd is None else np.vstack([scripted, self._crowd.at(self.time)])
 
     def scan(self) -> LaserScan:
@@ -141,12 +143,19 @@ class World:
 
         Raises ScenarioError for what cannot be, and then changes nothing. A contact is forgotten.
         """
-        movers = Movers(scenario.movers)
+        movers, late = Movers(scenario.movers), self._late_walkers(scenario)
         self._set_obstacles(scenario.obstacles)
         self._set_movers(movers)
+        self.late = late
         self._robot, self.contact, self.clearance = scenario.robot, "", math.inf
         self.drive.limits = scenario.robot.limits
         self._look(self.twist, thoroughly=True)
+
+    def _late_walkers(self, scenario: Scenario) -> LateWalkers | None:
+        """The movers of a scenario in which they notice the robot late."""
+        if scenario.attention != "late":
+            return None
+        return LateWalkers(scenario.movers, scenario.robot.footprint, self.gaps, self.time)
 
     def _set_movers(self, movers: Movers) -> None:
         crowd_radii = np.empty(0) if self._crowd is None else self._crowd.radii
@@ -212,10 +221,18 @@ class World:
             self.clearance = min(self.clearance, self._solid_gap)
         if self._crowd is not None:
             self._crowd.advance(self.time, self.pose)
-        gap = math.inf
-        if len(self.mover_radii):
-            gap = gap_to_discs(self.pose, footprint, self.movers, self.mover_radii)
+        if self.late is not None:
+            self.late.advance(self.time, self.pose, twist)
+        movers = self.movers
+        gap = self._gap_to(movers)
         self.clearance = max(0.0, min(self.clearance, gap))
-        if self.clearance <= 0.0:
+        if gap <= 0.0 and self.late is not None:
+            movers[: len(self.late.radii)][self.late.bumping] = math.nan
+            gap = self._gap_to(movers)
+        if min(self._solid_gap, gap) <= 0.0:
             at_rest = abs(twist.v) < RESTING and abs(twist.omega) < RESTING
             self.contact = "resting" if at_rest else "moving"
+
+    def _gap_to(self, movers: Floats) -> float:
+        """Metres from the footprint to movers at (m, 2); inf without any."""
+        return gap_to_discs(self.pose, self._robot.footprint, movers, self.mover_radii)

@@ -35,9 +35,11 @@ from dynastar.grid import OccupancyGrid
 from dynastar.io.maps import load_map
 from dynastar.io.pedestrians import Recording, load_recording
 from dynastar.simulation import Mover, Scenario
+from dynastar.simulation.scenario import Attention
 
 DEFAULT_MISSIONS = None
 QUICK_MISSIONS = 20
+ATTENTION: Attention = "late"
 
 COMPARABLE = (
     "The recordings are public, the missions are this suite's: no published figure compares."
@@ -91,6 +93,7 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
         start=(*start, None),
         goals=(Goal(*goal),),
         movers=pedestrians(place.recording, begin, begin + TIME_LIMIT),
+        attention=ATTENTION,
         goal_tolerance=GOAL_TOLERANCE,
         time_limit=TIME_LIMIT,
     )

@@ -12,8 +12,8 @@ from dynastar.geometry import Pose2D, Twist
 from dynastar.navigator import RobotState
 from dynastar.scan import LaserScan
 from dynastar.simulation import Scenario, World
+from dynastar.simulation.contact import RESTING
 from dynastar.simulation.movers import Movers
-from dynastar.simulation.world import RESTING
 
 STUCK = 5.0  # s without motion, from which on navground calls it a deadlock
 

@@ -38,9 +38,11 @@ from dynastar.geometry import Goal
 from dynastar.robot import ROBOTS, Robot
 from dynastar.simulation import Mover, Pedestrian, Scenario
 from dynastar.simulation.crowd import INSTALL, jupedsim_installed
+from dynastar.simulation.scenario import Attention
 
 DEFAULT_MISSIONS = 400
 QUICK_MISSIONS = 40
+ATTENTION: Attention = "late"
 
 COMPARABLE = "The worlds are this suite's own: no published figure is comparable."
 
@@ -93,6 +95,7 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
             start=(*made.site.start, made.heading),
             goals=(Goal(*made.site.goal),),
             movers=made.walkers,
+            attention=ATTENTION,
             crowd=made.crowd,
             goal_tolerance=GOAL_TOLERANCE,
             time_limit=made.seconds,

@@ -5,7 +5,7 @@ import math
 from dynastar.bench.suites.physics_model import Body, Engine
 from dynastar.geometry import Pose2D, Twist
 from dynastar.simulation import Scenario, World
-from dynastar.simulation.world import RESTING
+from dynastar.simulation.contact import RESTING
 
 
 class PhysicsWorld(World):
