@@ -60,6 +60,7 @@ def test_a_mission_is_run_kept_and_replayed(
         (["paper", "--dask", "nowhere", "--missions", "1"], "--dask nowhere"),
         (["movingai", "--replay", "0"], "drives nothing"),
         (["movingai", "--ideal"], "--ideal has no effect"),
+        (["movingai", "--attention", "none"], "--attention has no effect"),
         (["all", "--select", "3"], "--select goes with one suite"),
         (["all", "--set", "horizon=2"], "horizon"),
         (["compare", "a.json"], "two results"),

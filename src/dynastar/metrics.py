@@ -17,14 +17,14 @@ class Metrics(NamedTuple):
     ``time`` (s) runs to the tick that first says "arrived", else to the last one. ``length`` (m),
     ``turning_points`` and ``smoothness`` are of the true driven path until rest. ``min_clearance``
     (m) is the smallest true gap between the footprint and anything. A contact ends a mission, so
-    both contact counts are 0 or 1. Where walkers notice the robot late, ``bumps`` counts their touches
-    of a robot that did not move towards them, and ``stops`` how often one stopped for it.
-    ``replans`` are the plans after the first, ``recoveries`` the
+    both contact counts are 0 or 1. ``replans`` are the plans after the first, ``recoveries`` the
     events of that kind. ``command_ms_mean`` and ``command_ms_max`` (ms) are wall time over all
     calls of ``command``: sensing, planning and the first calls, which may compile, included.
     ``smoothness`` is the total variation of the turning rate per metre, ``sum |omega_{i+1} - omega_i|
     / length`` in (rad/s)/m: 0 on a line or a single arc, small is smooth. ``mean_speed`` (m/s) is the
-    length over the time until rest. ``goals_reached`` counts goals in order.
+    length over the time until rest. ``goals_reached`` counts goals in order. Where walkers notice the
+    robot late, ``bumps`` counts their touches of a robot that did not move towards them, and ``stops``
+    how often one stopped for it.
     """
 
     outcome: str
@@ -35,8 +35,6 @@ class Metrics(NamedTuple):
     min_clearance: float | None
     contacts_moving: int
     contacts_resting: int
-    bumps: int
-    stops: int
     replans: int
     recoveries: int
     command_ms_mean: float | None
@@ -44,6 +42,8 @@ class Metrics(NamedTuple):
     smoothness: float | None
     mean_speed: float | None
     goals_reached: int
+    bumps: int
+    stops: int
 
 
 def measure(episode: Episode) -> Metrics:
@@ -63,8 +63,6 @@ def measure(episode: Episode) -> Metrics:
         min_clearance=float(clearance.min()) if len(clearance) else None,
         contacts_moving=int(episode.contact == "moving"),
         contacts_resting=int(episode.contact == "resting"),
-        bumps=sum(event.kind == "bump" for event in episode.events),
-        stops=sum(event.kind == "stop" for event in episode.events),
         replans=max(len(episode.plans) - 1, 0),
         recoveries=sum(event.kind == "recovery" for event in episode.events),
         command_ms_mean=float(command_ms.mean()) if len(command_ms) else None,
@@ -72,6 +70,8 @@ def measure(episode: Episode) -> Metrics:
         smoothness=turning / length if length > 0.0 else None,
         mean_speed=length / duration if duration > 0.0 else None,
         goals_reached=goals_reached(episode),
+        bumps=sum(event.kind == "bump" for event in episode.events),
+        stops=sum(event.kind == "stop" for event in episode.events),
     )
 
 

@@ -91,6 +91,13 @@ def test_missions_that_do_not_match_are_refused(change, said):
         compare(result(["arrived"] * 2), result(["arrived"] * 3))
 
 
+def test_another_attention_is_named_and_a_result_without_one_had_none():
+    earlier, late = result(["arrived"]), result(["arrived"], attention="late")
+    assert only(earlier, late)["conditions"] == {"attention": ["none", "late"]}
+    assert "  attention: none -> late" in as_lines(compare(earlier, late))
+    assert only(earlier, result(["arrived"], attention="none"))["conditions"] == {}
+
+
 def test_suites_of_one_file_are_named():
     both = result(["arrived"]) | result(["arrived"], name="other")
     assert compare(both, result(["arrived"]))["not_compared"] == ["other"]

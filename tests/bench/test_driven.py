@@ -70,6 +70,12 @@ def test_options_are_laid_over_the_scenario():
     asked = driven.asked(made, options, 2)
     assert (asked.seed, asked.preset) == (17, "paper")
     assert asked.navigator == {"period": 0.1, "dwa": {"horizon": 2.0}}
+    attentions = [("none", None), ("late", None), ("late", "none"), ("none", "late")]
+    found = [
+        driven.asked(replace(made, attention=own), Options(attention=other), 0).attention
+        for own, other in attentions
+    ]
+    assert found == ["none", "late", "none", "late"]
     row = run_suite("small", SUITE, Options(settings={"period": 7.0}))["rows"][0]
     assert row["outcome"] == "error"
     assert "period" in row["reason"]

@@ -33,10 +33,19 @@ def test_a_run_goes_on_where_it_was_cut_off(tmp_path: Path) -> None:
     # More missions go on, too; another seed or setting begins anew.
     run_suite("made up", made, Options(repeat=3), keep=keep)
     assert len(flown) == 15
-    for other in (Options(seed=1), Options(seed=1, settings={"period": 0.2}), Options(ideal=True)):
+    changed = {"settings": {"period": 0.2}}, {"ideal": True}, {"attention": "late"}
+    for other in (Options(seed=1), *(Options(**one) for one in changed)):
         before = len(flown)
         run_suite("made up", made, other, keep=keep)
         assert len(flown) == before + 5
+
+
+def test_a_result_names_the_attention_of_its_walkers() -> None:
+    made = suite(lambda: range(11, 12))
+    assert run_suite("made up", made, Options())["attention"] == "none"
+    made.ATTENTION = "late"
+    assert run_suite("made up", made, Options())["attention"] == "late"
+    assert run_suite("made up", made, Options(attention="none"))["attention"] == "none"
 
 
 def test_failures_are_rows_and_order_is_kept() -> None:

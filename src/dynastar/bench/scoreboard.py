@@ -87,6 +87,8 @@ def table(result: Result) -> Table:
             ("95 %", ""),
             ("moving", "d"),
             ("resting", "d"),
+            ("bumps", "d"),
+            ("stops", "d"),
             ("timeouts", "d"),
             ("score", ".3f"),
             ("time ratio", ".2f"),
@@ -96,8 +98,10 @@ def table(result: Result) -> Table:
         ),
         lines,
         "Succeeded: arrived, or rightly said that there is no way, without contact; with Wilson's interval "
-        "in per cent. Moving, resting: contacts by the robot's motion. Time ratio: mean over arrivals of "
-        "the time over the time bound. Ticks: medians over the missions." + left,
+        "in per cent. Moving, resting: contacts by the robot's motion. Bumps: touches by walkers while the "
+        "robot did not move towards them; stops: walkers who stopped for it; both end no mission. Time "
+        "ratio: mean over arrivals of the time over the time bound. Ticks: medians over the missions."
+        + left,
     )
 
 
@@ -110,6 +114,8 @@ def _line(name: str, of: Result) -> tuple[Cell, ...]:
         f"{100 * low:.0f}-{100 * high:.0f}",
         of["contacts_moving"],
         of["contacts_resting"],
+        of["bumps"] or None,
+        of["stops"] or None,
         of["timeouts"],
         *(of[key] for key in ("score", "time_ratio", "tick_ms_median", "tick_ms_p99")),
         of.get("wall_s"),

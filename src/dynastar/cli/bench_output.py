@@ -10,7 +10,15 @@ from dynastar.cli.show import as_json, as_table
 
 SHOWN_FAILURES = 20
 NOT_SHOWN = ("rows", "groups", "published", "comparable", "settings", "limited")
-OF_GROUPS = ("missions", "succeeded", "contacts_moving", "contacts_resting", "score", "time_ratio")
+OF_GROUPS = {
+    "missions": "d",
+    "succeeded": "d",
+    "contacts_moving": "d",
+    "contacts_resting": "d",
+    "score": ".3f",
+    "time_ratio": ".2f",
+}
+LATE = ("bumps", "stops")  # of walkers who notice the robot late
 
 
 def print_result(result: Mapping[str, Any]) -> None:
@@ -26,11 +34,11 @@ def print_result(result: Mapping[str, Any]) -> None:
         seconds = (f"{cause} {spent:.0f} s" for cause, spent in result["limited"].items())
         print(f"limited by: {', '.join(seconds)}")
     if len(result["groups"]) > 1:
+        keys = {**OF_GROUPS, **{key: "d" for key in LATE if result[key]}}
         lines: list[tuple[Cell, ...]] = [
-            (name, *(of[key] for key in OF_GROUPS)) for name, of in result["groups"].items()
+            (name, *(of[key] for key in keys)) for name, of in result["groups"].items()
         ]
-        formats = ("d", "d", "d", "d", ".3f", ".2f")
-        columns = (("group", ""), *zip(OF_GROUPS, formats, strict=True))
+        columns = (("group", ""), *keys.items())
         print(f"\n{as_text(Table('groups', '', columns, lines))}")
     for published in result["published"]:
         print(f"published: {published['label']}: {published['figure']} [{published['source']}]")

@@ -25,12 +25,17 @@ SLOW = 0.5  # m/s, the least speed of walkers who turn away from the robot
 SOON = 1e-3  # s over which a mover's velocity is taken
 
 
+def _unattended(scenario: Scenario) -> Scenario:
+    """The scenario with walkers who react to nobody: the page moves them by their scripts."""
+    return replace(scenario, attention="none")
+
+
 class Scenery:
     """A scene's world, and ``scenario`` with the obstacles and movers that are in it now."""
 
     def __init__(self, scenario: Scenario) -> None:
         self.scenario = scenario
-        self.world = World(scenario, start_pose(scenario), scenario.seed)
+        self.world = World(_unattended(scenario), start_pose(scenario), scenario.seed)
         self._paint, self._rings = Paint(scenario.grid), scenario.obstacles
         self._movers = list(scenario.movers)
 
@@ -49,7 +54,7 @@ class Scenery:
     def _change(self) -> None:
         rings = (*self._rings, *self._paint.rings())
         self.scenario = replace(self.scenario, obstacles=rings, movers=tuple(self._movers))
-        self.world.change(self.scenario)
+        self.world.change(_unattended(self.scenario))
 
     @property
     def _reach(self) -> float:

@@ -130,11 +130,23 @@ def test_a_contact_with_somebody_who_just_appeared_is_flagged(folder: Path) -> N
     made = replace(crowd.scenario(mission, options, 0), start=(6.0, 2.0, 0.0), time_limit=5.0)
     for begin, flagged in ((1.0, True), (-2.0, False)):
         appears = Mover(0.25, np.array([begin, 4.0]), np.array([[6.0, 3.2], [6.0, 1.0]]), "vanish")
-        world = replace(made, movers=(appears,), time_limit=20.0)
+        world = replace(made, movers=(appears,), time_limit=20.0, attention="none")
         episode = drive(world, navigator=Still)
         assert episode.contact == "resting"
         late = float(episode.trajectory.times[-1]) - begin
         assert crowd.contact_on_appearing(episode, world.movers) == (flagged and late <= 1.0)
+
+
+def test_who_walks_up_to_a_robot_at_rest_stops_and_no_contact_is_flagged(folder: Path) -> None:
+    options = Options(data=folder)
+    mission = choose_missions(crowd, options)[0][0]
+    made = replace(crowd.scenario(mission, options, 0), start=(6.0, 2.0, 0.0))
+    appears = Mover(0.25, np.array([1.0, 4.0]), np.array([[6.0, 3.2], [6.0, 1.0]]), "vanish")
+    world = replace(made, movers=(appears,), time_limit=5.0)
+    assert world.attention == "late"
+    episode = drive(world, navigator=Still)
+    assert episode.contact == ""
+    assert not crowd.contact_on_appearing(episode, world.movers)
 
 
 def test_damaged_recordings_say_where(tmp_path: Path) -> None:

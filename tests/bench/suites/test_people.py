@@ -19,7 +19,9 @@ from dynastar.simulation import Mover
 from dynastar.simulation.contact import Solids, placed_footprint
 from dynastar.simulation.crowd import jupedsim_installed
 from dynastar.simulation.movers import Movers
+from scripted import Still
 
+WALKED_INTO = 1  # a world in which somebody walks into a robot that stays at its start
 needs_jupedsim = pytest.mark.skipif(not jupedsim_installed(), reason="needs jupedsim")
 NUMBERS = (0, 2, 5, 8, 12, 17, 26, 37)
 PIONEER = ROBOTS["pioneer3dx"]
@@ -285,6 +287,17 @@ def test_the_scenario_of_a_number(monkeypatch):
     monkeypatch.setattr(suite, "make", lambda *_: "no place")
     with pytest.raises(DataError, match="people 2: no place"):
         suite.scenario(mission(2), Options(), 0)
+
+
+def test_walkers_are_late_unless_the_options_ask_for_none(monkeypatch):
+    monkeypatch.setattr(suite.driven, "controller_named", lambda name: Still)
+    late, none = (
+        suite.run_mission(mission(WALKED_INTO), Options(attention=attention), 0)
+        for attention in (None, "none")
+    )
+    assert (late["outcome"], late["contacts_resting"]) == ("timeout", 0)
+    assert late["stops"] >= 1
+    assert (none["outcome"], none["contacts_resting"], none["stops"]) == ("contact", 1, 0)
 
 
 def test_rows_say_the_mode(monkeypatch):
