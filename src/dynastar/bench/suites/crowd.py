@@ -5,9 +5,10 @@ pairs of entries: west to east, east to west, south to north, north to south, an
 Mission number = 100 * recording (by name) + 10 * pair + time. See ``crowd_worlds`` for the rules that
 say where entries are and when exactly a mission starts.
 
-The pedestrians are discs of 0.25 m that follow their tracks and react to nobody; they are gone after
-their last key. ``contact_on_appearing`` of a row tells that the pedestrian who was touched had
-appeared within 1 s before.
+The pedestrians are discs of 0.25 m that follow their tracks and do not react to each other; they are
+gone after their last key. They notice the robot late (``simulation.attention``), with ``--attention
+none`` never. ``contact_on_appearing`` of a row tells that the pedestrian who was touched had appeared
+within 1 s before.
 """
 
 from collections.abc import Iterator

@@ -3,7 +3,9 @@
 Number n has ``[seed, n]`` as its seed. Every fourth number (n mod 4 = 3, ``--select 3::4``) is
 ``reactive``: JuPedSim moves the people, and the robot is one of those whom they avoid; this needs the
 extra ``pedestrians``, and without it these numbers are left out. All others are ``indifferent``: people
-follow scripts whatever happens around them. The row's ``group`` says which.
+follow scripts and notice the robot late, if at all: they stop in front of a robot that rests or moves
+away, and go round it (``simulation.attention``). With ``--attention none`` they walk on, whatever is
+there. The row's ``group`` says which.
 
 The place is the (n // 4 mod 5)-th of corridor, hall, crossing, doorway and office (``people_sites``); the
 robot the (n mod 3)-th of Pioneer 3-DX, a Jackal at 1.2 m/s and a TurtleBot3 Burger at 0.5 m/s. The map is
