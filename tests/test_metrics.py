@@ -106,16 +106,59 @@ def test_command_times():
     assert numbers.command_ms_max == pytest.approx(9.0)
 
 
-def turning(omegas: list[float]) -> Metrics:
-    line = np.column_stack([np.arange(len(omegas)), np.zeros(len(omegas))])
-    made = episode(line)
-    twists = np.column_stack([np.ones(len(omegas)), omegas])
-    return measure(replace(made, trajectory=replace(made.trajectory, twists=twists)))
+def test_smoothness_is_that_of_the_driven_trajectory():
+    made = episode(np.column_stack([np.arange(3), np.zeros(3)]))
+    twists = np.array([[1.0, 0.0], [1.0, 0.4], [1.0, -0.1]])
+    numbers = measure(replace(made, trajectory=replace(made.trajectory, twists=twists)))
+    assert numbers.smoothness == pytest.approx(0.9 / 2.0)
+    assert numbers.angular_acceleration == pytest.approx(np.sqrt((0.4**2 + 0.5**2) / 2.0))
+    assert numbers.omega_changes == pytest.approx(0.5)
+    assert (numbers.circles, numbers.jerk) == (0, pytest.approx(0.0))
 
 
-def test_smoothness_is_the_variation_of_the_turning_rate_per_metre():
-    assert turning([0.2, 0.2, 0.2]).smoothness == pytest.approx(0.0)
-    assert turning([0.0, 0.4, -0.1]).smoothness == pytest.approx(0.9 / 2.0)
+def passing(gap: float, **changed: Any) -> Metrics:
+    """A robot at rest in (0, 0) and a disc of 0.2 m that passes at 1 m/s, ``gap`` m beside it."""
+    ticks = np.arange(-10.0, 11.0)
+    path = np.column_stack([ticks, np.full(len(ticks), 0.3 + 0.2 + gap)])
+    still = np.zeros((len(ticks), 2))
+    return measure(episode(still, movers=path[:, None], mover_radii=np.array([0.2]), **changed))
+
+
+def test_nearest_is_the_gap_to_the_footprint_between_ticks_too():
+    assert passing(0.1).nearest == pytest.approx(0.1)
+    square = np.array([[-0.4, -0.3], [0.4, -0.3], [0.4, 0.3], [-0.4, 0.3]])
+    assert passing(0.1, footprint=square).nearest == pytest.approx(0.1)
+    assert passing(-0.1).nearest == passing(-0.3, footprint=square).nearest == 0.0
+    # At a tick the disc is 1.5 m ahead, half a second later it has come half as near.
+    path = np.array([[-0.5, 1.0], [0.5, 1.0]])
+    between = episode(np.zeros((2, 2)), movers=path[:, None], mover_radii=np.array([0.2]))
+    assert measure(between).nearest == pytest.approx(0.5)
+
+
+def test_nearest_turns_the_footprint_with_the_robot():
+    made = episode(np.zeros((2, 2)), footprint=np.array([[2, -0.1], [2, 0.1], [0, 0.1], [0, -0.1]]))
+    made = replace(made, movers=np.full((2, 1, 2), [0.0, 3.0]), mover_radii=np.array([0.2]))
+    assert measure(made).nearest == pytest.approx(np.hypot(0.0, 3.0 - 0.1) - 0.2)
+    poses = np.array([[0.0, 0.0, np.pi / 2.0]] * 2)
+    made = replace(made, trajectory=replace(made.trajectory, poses=poses))
+    assert measure(made).nearest == pytest.approx(0.8)
+
+
+def test_time_within_a_distance_is_a_fraction_of_all():
+    numbers = passing(0.1)
+    for within, found in ((0.2, numbers.within_0_2), (0.45, numbers.within_0_45)):
+        reach = np.sqrt((0.5 + within) ** 2 - (0.5 + 0.1) ** 2)  # of 10 m before and behind
+        assert found == pytest.approx(reach / 10.0, abs=0.006)
+
+
+def test_moving_obstacles_count_while_they_are_there():
+    path = np.array([[np.nan, np.nan], [5.0, 0.0], [3.0, 0.0], [np.nan, np.nan]])
+    made = episode(np.zeros((4, 2)), movers=path[:, None], mover_radii=np.array([0.2]))
+    numbers = measure(made)
+    assert (numbers.nearest, numbers.within_0_2) == (pytest.approx(2.5), 0.0)
+    gone = measure(replace(made, movers=np.full((4, 1, 2), np.nan)))
+    assert gone.nearest is gone.within_0_2 is gone.within_0_45 is None
+    assert measure(episode(np.zeros((4, 2)))).nearest is None
 
 
 def test_goals_count_in_order():
@@ -131,6 +174,7 @@ def test_a_mission_without_a_tick_has_no_numbers():
     assert numbers.length == 0.0
     assert numbers.time is numbers.mean_speed is numbers.smoothness is None
     assert numbers.command_ms_mean is numbers.command_ms_max is numbers.min_clearance is None
+    assert numbers.nearest is numbers.within_0_2 is numbers.within_0_45 is None
 
 
 @given(st.lists(st.tuples(*2 * [st.floats(-100, 100)]), min_size=1, max_size=20))

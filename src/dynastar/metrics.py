@@ -5,10 +5,14 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from dynastar import smoothness
 from dynastar.episode import Episode
 from dynastar.path import turning_points
 
 Floats = npt.NDArray[np.float64]
+
+CLOSE, LESS_CLOSE = 0.2, 0.45  # m, gaps that a person may find too small
+GAP_STEP = 0.05  # s, the longest time between two gaps to moving obstacles
 
 
 class Metrics(NamedTuple):
@@ -20,11 +24,13 @@ class Metrics(NamedTuple):
     both contact counts are 0 or 1. ``replans`` are the plans after the first, ``recoveries`` the
     events of that kind. ``command_ms_mean`` and ``command_ms_max`` (ms) are wall time over all
     calls of ``command``: sensing, planning and the first calls, which may compile, included.
-    ``smoothness`` is the total variation of the turning rate per metre, ``sum |omega_{i+1} - omega_i|
-    / length`` in (rad/s)/m: 0 on a line or a single arc, small is smooth. ``mean_speed`` (m/s) is the
-    length over the time until rest. ``goals_reached`` counts goals in order. Where walkers notice the
-    robot late, ``bumps`` counts their touches of a robot that did not move towards them, and ``stops``
-    how often one stopped for it.
+    ``mean_speed`` (m/s) is the length over the time until rest. ``goals_reached`` counts goals in order.
+    Where walkers notice the robot late, ``bumps`` counts their touches of a robot that did not move
+    towards them, and ``stops`` how often one stopped for it.
+    ``nearest`` (m) is the smallest gap between the footprint and a moving obstacle, 0 at contact, and
+    ``within_0_2`` and ``within_0_45`` are the fractions of the time with such a gap under 0.2 m and 0.45
+    m. ``smoothness`` ((rad/s)/m), ``jerk`` (m/s3), ``angular_acceleration`` (rad/s2), ``omega_changes``
+    (1/m) and ``circles`` are defined in ``dynastar.smoothness``.
     """
 
     outcome: str
@@ -44,6 +50,13 @@ class Metrics(NamedTuple):
     goals_reached: int
     bumps: int
     stops: int
+    nearest: float | None
+    within_0_2: float | None
+    within_0_45: float | None
+    jerk: float | None
+    angular_acceleration: float | None
+    omega_changes: float | None
+    circles: int
 
 
 def measure(episode: Episode) -> Metrics:
@@ -51,7 +64,7 @@ def measure(episode: Episode) -> Metrics:
     driven = episode.trajectory
     length = driven.length if len(driven.times) else 0.0
     duration = float(driven.times[-1] - driven.times[0]) if len(driven.times) else 0.0
-    turning = float(np.abs(np.diff(driven.twists[:, 1])).sum())
+    gaps = mover_gaps(episode)
     clearance = episode.clearance[np.isfinite(episode.clearance)]
     command_ms = episode.command_ms[np.isfinite(episode.command_ms)]
     return Metrics(
@@ -67,11 +80,18 @@ def measure(episode: Episode) -> Metrics:
         recoveries=sum(event.kind == "recovery" for event in episode.events),
         command_ms_mean=float(command_ms.mean()) if len(command_ms) else None,
         command_ms_max=float(command_ms.max()) if len(command_ms) else None,
-        smoothness=turning / length if length > 0.0 else None,
+        smoothness=smoothness.smoothness(driven),
         mean_speed=length / duration if duration > 0.0 else None,
         goals_reached=goals_reached(episode),
         bumps=sum(event.kind == "bump" for event in episode.events),
         stops=sum(event.kind == "stop" for event in episode.events),
+        nearest=float(gaps.min()) if np.isfinite(gaps).any() else None,
+        within_0_2=fraction_within(gaps, CLOSE),
+        within_0_45=fraction_within(gaps, LESS_CLOSE),
+        jerk=smoothness.jerk(driven),
+        angular_acceleration=smoothness.angular_acceleration(driven),
+        omega_changes=smoothness.omega_changes(driven),
+        circles=smoothness.circles(driven),
     )
 
 
@@ -98,3 +118,47 @@ def goals_reached(episode: Episode) -> int:
             return count
         tick += int(near[0])
     return len(goals)
+
+
+def mover_gaps(episode: Episode) -> Floats:
+    """Gap (n,) in m from the footprint to the nearest moving obstacle, at most 0.05 s apart.
+
+    It is inf where there is none, and 0 in contact. Poses and positions are linear between the ticks.
+    """
+    driven = episode.trajectory
+    if len(driven.times) == 0:
+        return np.empty(0)
+    begin, end = driven.times[0], driven.times[-1]
+    times = np.linspace(begin, end, int(np.ceil((end - begin) / GAP_STEP - 1e-9)) + 1)
+    x, y = (np.interp(times, driven.times, driven.poses[:, axis]) for axis in (0, 1))
+    theta = np.interp(times, driven.times, np.unwrap(driven.poses[:, 2]))
+    cos, sin = np.cos(theta), np.sin(theta)
+    nearest = np.full(len(times), np.inf)
+    for places, radius in zip(episode.movers.swapaxes(0, 1), episode.mover_radii, strict=True):
+        dx, dy = (
+            np.interp(times, driven.times, column) - here
+            for column, here in zip(places.T, (x, y), strict=True)
+        )
+        ahead, left = cos * dx + sin * dy, cos * dy - sin * dx
+        nearest = np.fmin(nearest, _footprint_gaps(episode, ahead, left) - radius)
+    return np.maximum(nearest, 0.0)
+
+
+def fraction_within(gaps: Floats, distance: float) -> float | None:
+    """Fraction of ``gaps`` (n,) under ``distance`` (m); None where no gap is finite."""
+    return float(np.mean(gaps < distance)) if np.isfinite(gaps).any() else None
+
+
+def _footprint_gaps(episode: Episode, ahead: Floats, left: Floats) -> Floats:
+    """Metres (n,) from the footprint to points in the robot's frame; 0 inside the polygon."""
+    if len(episode.footprint) == 0:
+        return np.hypot(ahead, left) - episode.radius
+    gaps, inside = np.full(len(ahead), np.inf), np.ones(len(ahead), bool)
+    for (ax, ay), (bx, by) in zip(
+        np.roll(episode.footprint, 1, axis=0), episode.footprint, strict=True
+    ):
+        ex, ey, px, py = bx - ax, by - ay, ahead - ax, left - ay
+        along = np.clip((px * ex + py * ey) / (ex * ex + ey * ey), 0.0, 1.0)
+        gaps = np.fmin(gaps, np.hypot(px - along * ex, py - along * ey))
+        inside &= ex * py - ey * px >= 0.0
+    return np.where(inside, 0.0, gaps)

@@ -78,11 +78,12 @@ def test_success(made, expected):
 
 def test_totals_by_hand():
     rows = [
-        row("arrived", group="a", score=0.5, time=10.0, time_ratio=1.0, length=4.0)
+        row("arrived", group="a", score=0.5, time=10.0, time_ratio=1.0, length=4.0, jerk=3.0)
         | {"tick_ms_median": 1.0, "tick_ms_p99": 3.0, "limited": {"risk": 2.0, "turn": 0.5}},
-        row("arrived", group="b", score=0.3, time=20.0, time_ratio=2.0, length=6.0)
+        row("arrived", group="b", score=0.3, time=20.0, time_ratio=2.0, length=6.0, jerk=4.0)
         | {"tick_ms_median": 2.0, "tick_ms_p99": 5.0, "limited": {"turn": 3.0}},
-        row("timeout", group="b", score=0.0, time=99.0, tick_ms_median=9.0, tick_ms_p99=9.0),
+        row("timeout", group="b", score=0.0, time=99.0, tick_ms_median=9.0, tick_ms_p99=9.0)
+        | {"jerk": 9.0},
         row("error", reason="x"),
         row("blocked_rightly", group="a"),
     ]
@@ -91,6 +92,7 @@ def test_totals_by_hand():
     assert list(found)[-1] == "rows"
     expected = {"missions": 5, "skipped": 7, "arrived": 2, "blocked_rightly": 1, "succeeded": 3}
     expected |= {"timeouts": 1, "errors": 1, "contacts_moving": 0, "mean_length": 5.0}
+    expected |= {"mean_jerk": 3.5, "mean_nearest": None}
     expected |= {"mean_time": 15.0, "time_ratio": 1.5, "tick_ms_median": 2.0, "tick_ms_p99": 5.0}
     assert {key: found[key] for key in expected} == expected
     assert found["score"] == pytest.approx(0.8 / 5)

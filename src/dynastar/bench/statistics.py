@@ -13,6 +13,11 @@ Interval = tuple[float, float]
 RESAMPLES = 9_999
 ALPHA, POWER = 0.05, 0.8  # of the sample size for a difference between pairs
 
+QUALITY = (  # of a row, averaged over the missions that arrived
+    *("smoothness", "angular_acceleration", "omega_changes", "jerk", "circles"),
+    *("nearest", "within_0_2", "within_0_45"),
+)
+
 
 def wilson(successes: int, trials: int) -> Interval | None:
     """Wilson's 95 % score interval of a proportion [Wilson1927]; None without trials."""
@@ -126,6 +131,7 @@ def _sums(rows: Sequence[Row]) -> dict[str, Any]:
         "mean_length": _mean(arrived, "length"),
         "mean_time": _mean(arrived, "time"),
         "time_ratio": _mean(arrived, "time_ratio"),
+        **{f"mean_{key}": _mean(arrived, key) for key in QUALITY},
         "tick_ms_median": _median(rows, "tick_ms_median"),
         "tick_ms_p99": _median(rows, "tick_ms_p99"),
         "limited": seconds_by_cause(row.get("limited") or {} for row in rows),
