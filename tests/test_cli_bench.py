@@ -62,6 +62,8 @@ def test_a_mission_is_run_kept_and_replayed(
         (["movingai", "--ideal"], "--ideal has no effect"),
         (["movingai", "--attention", "none"], "--attention has no effect"),
         (["all", "--select", "3"], "--select goes with one suite"),
+        (["random", "--quick", "--seed", "10000"], "--seed 10000 is a report seed"),
+        (["all", "--quick", "--seed", "12345"], "--seed 12345 is a report seed"),
         (["all", "--set", "horizon=2"], "horizon"),
         (["compare", "a.json"], "two results"),
         (["compare", "a.json", "b.json"], "a.json: there is no such file"),

@@ -6,6 +6,7 @@ import pytest
 from dynastar.bench import scoreboard
 from dynastar.bench.compare import compare
 from dynastar.bench.missions import Mission, Options
+from dynastar.bench.scoreboard_tables import quality_table, table
 from dynastar.bench.suites import SUITES
 from dynastar.bench.tables import as_text
 from dynastar.errors import DataError, InputError
@@ -22,6 +23,8 @@ def module(name, outcomes, quick=2, **more):
             "time": 4.0,
             "time_ratio": 2.0 if mission.spec == "arrived" else None,
             "contacts_moving": int(mission.spec == "contact"),
+            "smoothness": 0.5,
+            "within_0_2": 0.25,
         }
 
     made.DEFAULT_MISSIONS = None
@@ -68,7 +71,7 @@ def test_every_suite_is_run_or_said_to_be_left_out(suites, tmp_path):
     assert "is not installed" in result["left_out"]["missing"]
     assert [row["number"] for row in result["suites"]["first"]["rows"]] == list(range(6))
     assert result["suites"]["first"]["contacts_moving"] == 1
-    text = as_text(scoreboard.table(result))
+    text = as_text(table(result))
     assert "second was left out" not in text
     assert "absent was left out: give --data DIR" in text
     first = next(line for line in text.splitlines() if line.startswith("first "))
@@ -76,6 +79,37 @@ def test_every_suite_is_run_or_said_to_be_left_out(suites, tmp_path):
     assert sum(line.startswith("  first ") for line in text.splitlines()) == 2
     file = save(scoreboard.picture(result), tmp_path / "all.png")
     assert file.read_bytes().startswith(b"\x89PNG")
+
+
+def test_other_controllers_drive_in_the_same_missions(suites, monkeypatch, tmp_path):
+    driven = suites["first"].run_mission
+
+    def by_others_worse(mission, options, repeat):
+        row = driven(mission, options, repeat)
+        if options.controller == "printed":
+            raise ValueError("no such world")
+        return row if options.controller == "navigator" else row | {"outcome": "timeout"}
+
+    suites["first"].run_mission = by_others_worse
+    suites["first"].scenario = lambda mission, options, repeat: None
+    result = scoreboard.run_all(Options(), others=("pure_pursuit", "nobody", "printed"))
+    assert result["suites"]["first"]["arrived"] == 5
+    assert list(result["others"]) == ["pure_pursuit"]
+    assert list(result["others"]["pure_pursuit"]) == ["first"]  # the second drives nothing
+    other = result["others"]["pure_pursuit"]["first"]
+    assert (other["controller"], other["timeouts"], other["arrived"]) == ("pure_pursuit", 6, 0)
+    assert "unknown controller 'nobody'" in result["left_out"]["nobody"]
+    assert result["left_out"]["printed in first"] == "ValueError: no such world"
+    lines = as_text(table(result)).splitlines()
+    line = next(line for line in lines if "by pure_pursuit" in line)
+    assert line.split()[2:8] == ["6", "0", "0-39", "1", "0", "6"]
+    save(scoreboard.picture(result), tmp_path / "all.png")
+
+
+def test_quality_is_over_arrivals(suites):
+    lines = as_text(quality_table(scoreboard.run_all(Options()))).splitlines()
+    line = next(line for line in lines if line.startswith("first "))
+    assert line.split() == ["first", "0.50", "25.0"]
 
 
 def test_quick_spreads_a_few_missions(suites):

@@ -59,7 +59,8 @@ def replay(
     mission = mission_numbered(name, suite, options, number)
     file = folder / "episode.npz"
     file.unlink(missing_ok=True)
-    row = run_job(options._replace(observe=EpisodeKeeper(file)), Job(suite, mission, repeat))
+    job = Job(suite, mission, repeat, options.controller)
+    row = run_job(options._replace(observe=EpisodeKeeper(file)), job)
     if not file.exists():
         raise InputError(f"{name} {number} has no episode: {row['outcome']}, {row['reason']}")
     return row, load_episode(file)

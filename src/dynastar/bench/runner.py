@@ -17,24 +17,28 @@ from dynastar.bench.versions import code_version, controller_version
 
 
 class Job(NamedTuple):
-    """A mission to run once: the suite by name, or itself where it has none, and the repeat."""
+    """A mission to run once by a controller: the suite by name, or itself where it has none."""
 
     suite: str | Suite
     mission: Mission
     repeat: int
+    controller: str
 
     @property
-    def key(self) -> tuple[str, int, int]:
-        """Digest that identifies the job."""
+    def key(self) -> tuple[str, int, int, str]:
+        """Values that identify the job."""
         name = self.suite if isinstance(self.suite, str) else ""
-        return (name, self.mission.number, self.repeat)
+        return (name, self.mission.number, self.repeat, self.controller)
 
 
 def jobs_of(name: str, suite: Suite, options: Options) -> tuple[list[Job], int]:
     """The jobs of a suite, in the missions' order, and how many missions were left out."""
     chosen, skipped = choose_missions(suite, options)
     known = name if name in SUITES else suite
-    return [Job(known, m, repeat) for m in chosen for repeat in range(options.repeat)], skipped
+    repeats = range(options.repeat)
+    return [
+        Job(known, m, repeat, options.controller) for m in chosen for repeat in repeats
+    ], skipped
 
 
 def run_suite(
@@ -56,8 +60,7 @@ def run_jobs(
     """The row of each job and the seconds of wall time it took, in the jobs' order."""
     settings = {
         "run": name,
-        **{key: getattr(options, key) for key in ("seed", "preset", "ideal", "controller")},
-        "attention": options.attention,
+        **{key: getattr(options, key) for key in ("seed", "preset", "ideal", "attention")},
         "settings": options.settings,
         "data": os.path.abspath(options.data or os.environ.get("DYNASTAR_DATA") or "."),
         "version": code_version() + controller_version(options.controller),
@@ -99,10 +102,15 @@ def _timed(options: Options, job: Job) -> dict[str, Any]:
 
 
 def run_job(options: Options, job: Job) -> dict[str, Any]:
-    """The row of a job with its number, repeat, seed and preset."""
+    """The row of a job with its number, repeat, seed and preset.
+
+    Only missions of the controller that the options name are observed.
+    """
     suite = load_suite(job.suite) if isinstance(job.suite, str) else job.suite
-    if options.observe is not None:
-        options = options._replace(observe=partial(options.observe, job.key[0]))
+    observe = options.observe if job.controller == options.controller else None
+    if observe is not None:
+        observe = partial(observe, job.key[0])
+    options = options._replace(controller=job.controller, observe=observe)
     row = row_of(lambda: suite.run_mission(job.mission, options, job.repeat))
     again = {"number": job.mission.number, "repeat": job.repeat, "seed": options.seed + job.repeat}
     return {**again, "preset": options.preset, **row}

@@ -12,6 +12,8 @@ from typing import NamedTuple
 from dynastar.bench.missions import Mission, Options, Suite
 from dynastar.errors import InputError
 
+REPORT_SEEDS = 10_000  # the first seed that is for published tables only
+
 
 class Slice(NamedTuple):
     """The numbers start, start + step, ... below ``stop`` (None: without end)."""
@@ -42,6 +44,15 @@ def parse_select(text: str) -> Slice:
     raise InputError(
         f"--select {text!r}: expected A:B:C (from A, below B, every C-th) or N, none negative"
     )
+
+
+def refuse_report_seed(seed: int) -> None:
+    """Refuses ``--quick`` with a report seed; raises InputError."""
+    if seed >= REPORT_SEEDS:
+        raise InputError(
+            f"--quick takes development seeds, below {REPORT_SEEDS}: --seed {seed} is a report seed, "
+            "for published tables only"
+        )
 
 
 def choose_missions(suite: Suite, options: Options) -> tuple[list[Mission], int]:

@@ -38,7 +38,8 @@ examples:
 
 A mission has the suite's own number. A run with --json-out that was cut off goes on where it ended when
 it is called again; until then its rows are in FILE.rows.jsonl. `all` runs every suite whose data and
-extras are there and writes all.json, all.txt and all.png into DIR. `compare` takes two results of the
+extras are there, also by the other controllers that are installed, and writes all.json, all.txt and all.png
+into DIR. `compare` takes two results of the
 same missions and says for each suite whether the second is better, worse or not clearly different."""
 
 COMMANDS = {"all": "run every suite", "compare": "compare two results"}
@@ -71,7 +72,13 @@ def _add_missions(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--select", metavar="A:B:C", help="a slice over the suite's own numbers, or one of them"
     )
-    parser.add_argument("--seed", type=seed, default=0, metavar="N")
+    parser.add_argument(
+        "--seed",
+        type=seed,
+        default=0,
+        metavar="N",
+        help="of what is drawn at random (default 0); from 10000 on for published tables only",
+    )
     parser.add_argument("--preset", choices=PRESETS, default="default")
     parser.add_argument(
         "--ideal", action="store_true", help="without range noise and without latency"
@@ -83,9 +90,9 @@ def _add_missions(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--controller",
-        default="navigator",
         metavar="NAME",
-        help="navigator (the default), pure_pursuit, printed, kompass_dwa, or MODULE:CLASS",
+        help="navigator (the default), pure_pursuit, printed, kompass_dwa, or MODULE:CLASS; `all` runs "
+        "the first four unless one is named",
     )
     add_set(parser)
     parser.add_argument(
@@ -164,7 +171,8 @@ def _run(arguments: argparse.Namespace, options: "Options") -> int:
 
 
 def _run_all(arguments: argparse.Namespace) -> int:
-    from dynastar.bench.scoreboard import picture, run_all, table
+    from dynastar.bench.scoreboard import COMPETITORS, picture, run_all
+    from dynastar.bench.scoreboard_tables import quality_table, table
     from dynastar.bench.tables import as_text
     from dynastar.cli.compiling import prepare
     from dynastar.viewer.sheet import save
@@ -177,10 +185,11 @@ def _run_all(arguments: argparse.Namespace) -> int:
     file = check_file("--json-out", arguments.json_out) or folder / "all.json"
     keep = _beside(file)
     prepare()
-    result = run_all(options, progress=True, keep=keep)
+    others = COMPETITORS if arguments.controller is None else ()
+    result = run_all(options, progress=True, keep=keep, others=others)
     _write(result, file, keep)
     save(picture(result), folder / "all.png")
-    text = as_text(table(result))
+    text = "\n\n".join(map(as_text, (table(result), quality_table(result))))
     (folder / "all.txt").write_text(text + "\n", encoding="utf-8")
     print(as_json(result) if arguments.json_out == "-" else text)
     print(f"the table and the picture are in {folder}, all rows in {file}", file=sys.stderr)
@@ -225,9 +234,13 @@ def _options(arguments: argparse.Namespace) -> "Options":
     from dynastar.bench.controllers import controller_named
     from dynastar.bench.keeping import FailureKeeper
     from dynastar.bench.missions import Options
+    from dynastar.bench.selection import refuse_report_seed
     from dynastar.bench.settings import read_settings
 
-    controller_named(arguments.controller)
+    controller = arguments.controller or "navigator"
+    controller_named(controller)
+    if arguments.quick:
+        refuse_report_seed(arguments.seed)
     observe = None
     if arguments.save_failures is not None:
         observe = FailureKeeper(make_folder("--save-failures", arguments.save_failures))
@@ -240,7 +253,7 @@ def _options(arguments: argparse.Namespace) -> "Options":
         preset=arguments.preset,
         workers=arguments.dask or arguments.workers or os.cpu_count() or 1,
         ideal=arguments.ideal,
-        controller=arguments.controller,
+        controller=controller,
         settings=read_settings(arguments.set, arguments.preset),
         quick=arguments.quick,
         attention=arguments.attention,
@@ -251,7 +264,7 @@ def _options(arguments: argparse.Namespace) -> "Options":
 def _refuse_driving(arguments: argparse.Namespace) -> None:
     """Refuses options that a suite which drives nothing would leave unheard."""
     asked = {
-        "--controller": arguments.controller != "navigator",
+        "--controller": arguments.controller is not None,
         "--set": arguments.set,
         "--save-failures": arguments.save_failures is not None,
         "--ideal": arguments.ideal,

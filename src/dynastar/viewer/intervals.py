@@ -11,7 +11,7 @@ from dynastar.viewer import palette
 from dynastar.viewer.sheet import PAGE, SMALL, legend_style, plain, room, sheet
 
 LINE, LETTER, GAP, LOW, TOP = 0.24, 0.055, 0.25, 0.5, 0.1  # inches
-COLOURS = (palette.FIRST_PATH, palette.DRIVEN, palette.MOVER)
+COLOURS = (palette.FIRST_PATH, palette.DRIVEN, palette.MOVER, palette.FAINT_INK)
 APART = 0.22  # of a row between two series
 
 Estimate = tuple[float, float | None, float | None]
