@@ -3,9 +3,9 @@
     dynastar bench all --quick --data DIR --out out/bench
     python benchmarks/scoreboard_page.py out/bench --data DIR
 
-takes the table out/bench/all.txt, failures by kind and what limited the speed from out/bench/all.json,
-and the other controllers from out/bench/CONTROLLER-SUITE.json; those that are not there are run first,
-with --quick. A picture of each kind of failure is drawn by `dynastar bench SUITE --replay N`.
+takes the tables out/bench/all.txt, and failures by kind, what limited the speed and the other
+controllers from out/bench/all.json. A picture of each kind of failure is drawn by
+`dynastar bench SUITE --replay N`.
 """
 
 import argparse
@@ -21,7 +21,6 @@ from PIL import Image
 
 DOCS = Path(__file__).parent.parent / "docs"
 PAGE, PICTURES = DOCS / "benchmarks.md", DOCS / "media" / "benchmarks"
-CONTROLLERS, SUITES = ("pure_pursuit", "kompass_dwa"), ("barn", "dynabarn", "maps", "people")
 KINDS = {
     "moving": "contact while moving",
     "resting": "contact while standing",
@@ -105,19 +104,15 @@ def told(suite: dict[str, Any]) -> str:
     return f"{suite['succeeded']} of {suite['missions']} {contacts}, {own}"
 
 
-def controllers_table(folder: Path, data: Path, suites: dict[str, Any]) -> str:
+def controllers_table(found: dict[str, Any]) -> str:
     """The navigator and the other controllers in the same missions."""
-    titles = " | ".join(f"`{name}`" for name in ("navigator", *CONTROLLERS))
-    lines = [f"| suite | {titles} |", f"|---|---{'|---' * len(CONTROLLERS)}|"]
-    for suite in SUITES:
-        cells = [told(suites[suite])]
-        for controller in CONTROLLERS:
-            file = folder / f"{controller}-{suite}.json"
-            if not file.exists():
-                options = ["--quick", "--data", str(data), "--controller", controller]
-                bench(suite, *options, "--json-out", str(file))
-            cells.append(told(json.loads(file.read_text(encoding="utf-8"))))
-        lines.append(f"| `{suite}` | {' | '.join(cells)} |")
+    others = found["others"]
+    titles = " | ".join(f"`{name}`" for name in (found["controller"], *others))
+    lines = [f"| suite | {titles} |", f"|---|---{'|---' * len(others)}|"]
+    for name, suite in found["suites"].items():
+        beside = [told(of[name]) if name in of else "" for of in others.values()]
+        if any(beside):
+            lines.append(f"| `{name}` | {' | '.join([told(suite), *beside])} |")
     return "\n".join(lines)
 
 
@@ -156,13 +151,13 @@ if __name__ == "__main__":
     parser.add_argument("--data", type=Path, required=True, help="the public data sets")
     arguments = parser.parse_args()
     table = (arguments.folder / "all.txt").read_text(encoding="utf-8")
-    suites = json.loads((arguments.folder / "all.json").read_text(encoding="utf-8"))["suites"]
+    everything = json.loads((arguments.folder / "all.json").read_text(encoding="utf-8"))
+    suites = everything["suites"]
     found = failures(suites)
     page = PAGE.read_text(encoding="utf-8")
     page = filled(page, "scoreboard", f"```text\n{table.strip()}\n```")
     page = filled(page, "failures", failures_table(found))
     page = filled(page, "limits", limits_table(suites))
-    others = controllers_table(arguments.folder, arguments.data, suites)
-    page = filled(page, "controllers", others)
+    page = filled(page, "controllers", controllers_table(everything))
     page = filled(page, "pictures", "\n\n".join(pictures(found, arguments.data)))
     PAGE.write_text(page, encoding="utf-8")

@@ -5,9 +5,12 @@ import subprocess
 import sys
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from dynastar.bench import scoreboard
+from dynastar.errors import InputError
 from test_cli import SCENARIO, finite, folder, refused, run
 
 __all__ = ["folder"]  # a fixture
@@ -81,6 +84,33 @@ def test_bad_arguments(
     (tmp_path / "file").touch()
     assert said in refused(run(capsys, "bench", *words))
     assert {path.name for path in tmp_path.iterdir()} <= {"file", "out"}
+
+
+@pytest.mark.parametrize(
+    ("words", "others"),
+    [
+        ([], scoreboard.COMPETITORS),
+        (["--quick"], ("pure_pursuit", "kompass_dwa")),
+        (["--controller", "navigator"], ()),
+        (["--quick", "--controller", "printed"], ()),
+    ],
+)
+def test_all_runs_other_controllers_unless_one_is_named(
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    words: list[str],
+    others: tuple[str, ...],
+) -> None:
+    asked = []
+
+    def run_all(options: Any, **more: Any) -> Any:
+        asked.append((options.controller, more["others"]))
+        raise InputError("enough")
+
+    monkeypatch.setattr(scoreboard, "run_all", run_all)
+    assert "enough" in refused(run(capsys, "bench", "all", "--out", tmp_path / "out", *words))
+    assert asked == [(words[-1] if "--controller" in words else "navigator", others)]
 
 
 def test_compare(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

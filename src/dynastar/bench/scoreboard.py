@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 COMPETITORS = ("pure_pursuit", "kompass_dwa", "printed")  # that drive beside the navigator
+QUICK_COMPETITORS = COMPETITORS[:2]  # printed takes longer than all others together
 
 Result = Mapping[str, Any]
 Planned = dict[tuple[str, str], tuple[list[Job], int]]  # by controller and suite: jobs, left out

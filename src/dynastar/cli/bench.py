@@ -92,7 +92,7 @@ def _add_missions(parser: argparse.ArgumentParser) -> None:
         "--controller",
         metavar="NAME",
         help="navigator (the default), pure_pursuit, printed, kompass_dwa, or MODULE:CLASS; `all` runs "
-        "the first four unless one is named",
+        "the first four (--quick: without printed) unless one is named",
     )
     add_set(parser)
     parser.add_argument(
@@ -171,7 +171,7 @@ def _run(arguments: argparse.Namespace, options: "Options") -> int:
 
 
 def _run_all(arguments: argparse.Namespace) -> int:
-    from dynastar.bench.scoreboard import COMPETITORS, picture, run_all
+    from dynastar.bench.scoreboard import COMPETITORS, QUICK_COMPETITORS, picture, run_all
     from dynastar.bench.scoreboard_tables import quality_table, table
     from dynastar.bench.tables import as_text
     from dynastar.cli.compiling import prepare
@@ -185,7 +185,9 @@ def _run_all(arguments: argparse.Namespace) -> int:
     file = check_file("--json-out", arguments.json_out) or folder / "all.json"
     keep = _beside(file)
     prepare()
-    others = COMPETITORS if arguments.controller is None else ()
+    others: tuple[str, ...] = ()
+    if arguments.controller is None:
+        others = QUICK_COMPETITORS if arguments.quick else COMPETITORS
     result = run_all(options, progress=True, keep=keep, others=others)
     _write(result, file, keep)
     save(picture(result), folder / "all.png")

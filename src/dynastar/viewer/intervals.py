@@ -1,5 +1,6 @@
 """Figures with their intervals, side by side: a column for each measure, a row for each group."""
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -11,6 +12,7 @@ from dynastar.viewer import palette
 from dynastar.viewer.sheet import PAGE, SMALL, legend_style, plain, room, sheet
 
 LINE, LETTER, GAP, LOW, TOP = 0.24, 0.055, 0.25, 0.5, 0.1  # inches
+LEGEND_COLUMNS, LEGEND_LINE = 2, 0.15  # inches
 COLOURS = (palette.FIRST_PATH, palette.DRIVEN, palette.MOVER, palette.FAINT_INK)
 APART = 0.22  # of a row between two series
 
@@ -29,10 +31,12 @@ def draw_intervals(measures: Sequence[Measure], groups: Sequence[str]) -> Figure
     """The measures side by side, the groups down the side, the first on top."""
     left = 0.2 + LETTER * max(map(len, groups), default=0)
     height = LINE * max(len(groups), 1)
-    figure = sheet(PAGE, LOW + height + TOP)
+    most = max((len(measure.series) for measure in measures), default=0)
+    low = LOW + LEGEND_LINE * max(math.ceil(most / LEGEND_COLUMNS) - 1, 0)
+    figure = sheet(PAGE, low + height + TOP)
     width = (PAGE - left - 0.1 - GAP * (len(measures) - 1)) / len(measures)
     for place, measure in enumerate(measures):
-        axes = room(figure, left + place * (width + GAP), LOW, width, height)
+        axes = room(figure, left + place * (width + GAP), low, width, height)
         for number, values in enumerate(measure.series.values()):
             offset = APART * (number - 0.5 * (len(measure.series) - 1))
             for row, group in enumerate(groups):
@@ -50,9 +54,13 @@ def draw_intervals(measures: Sequence[Measure], groups: Sequence[str]) -> Figure
                 Line2D([], [], color=colour, marker="o", markersize=3, linewidth=0.8, label=name)
                 for name, colour in zip(measure.series, COLOURS, strict=False)
             ]
-            low = (left + place * (width + GAP) + 0.5 * width) / PAGE, 0.04 / figure.get_figheight()
+            middle = left + place * (width + GAP) + 0.5 * width
             figure.legend(
-                handles=entries, loc="lower center", bbox_to_anchor=low, ncols=2, **legend_style()
+                handles=entries,
+                loc="lower center",
+                bbox_to_anchor=(middle / PAGE, 0.04 / figure.get_figheight()),
+                ncols=LEGEND_COLUMNS,
+                **legend_style(),
             )
     return figure
 
