@@ -15,6 +15,13 @@ MODULES = {
     "dynastar.planning": ("Planner", "PLANNERS", "segment_clear"),
     "dynastar.io": ("save_ros_map", "load_ros_map", "load_scenarios", "write_json"),
     "dynastar.metrics": ("Metrics", "measure"),
+    "dynastar.smoothness": (
+        "smoothness",
+        "jerk",
+        "angular_acceleration",
+        "omega_changes",
+        "circles",
+    ),
 }
 
 
