@@ -1,5 +1,6 @@
 """What a navigator is given, checked: its parts, and a path to follow."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ LONGEST_PATH = 1e5  # m of a path to follow
 
 
 def as_robot(grid: Any, robot: Any, config: Any) -> Robot:
-    """The robot, by its name or itself. Raises InputError for a part of a wrong type."""
+    """The robot as it may drive, by its name or itself; InputError for a part of a wrong type."""
     robot = choose(robot, ROBOTS, "robot") if isinstance(robot, str) else robot
     for what, value, kind in (
         ("a map", grid, OccupancyGrid),
@@ -30,7 +31,9 @@ def as_robot(grid: Any, robot: Any, config: Any) -> Robot:
             expected = f"{kind.__name__}{names}"
             raise InputError(f"{what}: got {type(value).__name__}, expected {expected}")
     assert isinstance(robot, Robot)
-    return robot
+    if config.reverse:
+        return robot
+    return replace(robot, limits=robot.limits._replace(v_min=max(robot.limits.v_min, 0.0)))
 
 
 def as_given_path(path: Path | npt.ArrayLike, heading: float | None) -> tuple[Path, Goal]:

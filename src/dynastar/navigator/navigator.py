@@ -1,7 +1,6 @@
 """The hybrid navigator (section V): perceive, route, guidance, dynamic window, send."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy.typing as npt
 
@@ -50,8 +49,6 @@ class Navigator:
         planner: Planner | None = None,
     ) -> None:
         robot = as_robot(grid, robot, config)
-        if not config.reverse:
-            robot = replace(robot, limits=robot.limits._replace(v_min=max(robot.limits.v_min, 0.0)))
         config = fitted(config, robot.footprint.inscribed)
         self.robot, self.config, self._grid = robot, config, grid
         planning_map = PlanningMap(grid, config.resolution, config.unknown)
