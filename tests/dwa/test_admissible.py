@@ -48,7 +48,7 @@ OVERSHOOT = 0.25 * CELL  # the longest stretch between two looks
 
 
 def certify(scene, robot, state, command):
-    return certified_stop(scene, rules_for(robot), state, command)
+    return certified_stop(scene, rules_for(robot), state, command, 0.0)
 
 
 def rests(scene, robot, state, command):
@@ -117,7 +117,17 @@ def test_a_drive_that_is_faster_than_told_stops_before_a_wall_too(error):
         x = wall + 0.5 * CELL - MARGIN - 0.3 - room - slack
         rules = rules_of(ROUND, DwaConfig(), PERIOD, drive_error=error)
         state = state_at(x, 4.0, 0.0, v, 0.0)
-        assert certified_stop(scene, rules, state, (v, 0.0)) == expected
+        assert certified_stop(scene, rules, state, (v, 0.0), 0.0) == expected
+
+
+def test_a_command_that_acts_for_longer_needs_more_room():
+    scene, wall, v, hold = scene_of(boxed((6.0, 0.0, 6.2, 8.0)), margin=MARGIN), 6.0, 1.0, 0.35
+    room = v * hold + v * v / (2.0 * WEAK.v_brake)
+    rules = rules_of(ROUND, DwaConfig(), PERIOD)
+    for slack, expected in ((0.01, ADMISSIBLE), (-0.01, NO_STOP)):
+        x = wall + 0.5 * CELL - MARGIN - 0.3 - room - slack
+        state = state_at(x, 4.0, 0.0, v, 0.0)
+        assert certified_stop(scene, rules, state, (v, 0.0), hold) == expected
 
 
 @given(st.sampled_from(sorted(SHAPES)), st.integers(0, 10**6))

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from dynastar import robot
 from dynastar.dwa.motion import (
-    STATE,
+    STOP_START,
     Pose,
     State,
     coast,
@@ -117,5 +117,5 @@ def test_a_drive_follows_no_command_below_its_least_speed(command, wanted, least
 
 def test_a_state_comes_back_from_its_record():
     state = state_at(1.0, 2.0, 0.5, 0.3, -0.2)
-    record = np.array([(*state.pose, state.v, state.omega)], STATE)
+    record = np.array([(*state.pose, state.v, state.omega, 0.1)], STOP_START)
     assert state_of(record[0]) == state

@@ -11,7 +11,7 @@ from dynastar.dwa import DynamicWindow
 from dynastar.dwa.admissible import ADMISSIBLE, MOVING, certified_stop, rests_in_time
 from dynastar.dwa.clearance import least_clearance
 from dynastar.dwa.config import DwaConfig, Weights
-from dynastar.dwa.dwa import TERMS
+from dynastar.dwa.dwa import TERMS, StopStart
 from dynastar.dwa.motion import state_at, stopping_time
 from dynastar.dwa.rollout import ROW, roll_out, tail_speeds
 from dynastar.dwa.scene import AT_REST, BACK, FOLLOW, STOP, Manoeuvre
@@ -162,7 +162,7 @@ def test_the_robot_passes_before_an_obstacle_where_a_stop_would_end_in_its_way()
     pose, twist = Pose2D(3.0, 4.0, 0.0), Twist(1.0, 0.0)
     scene = scene_of(empty(), moving=[obstacle], last=Manoeuvre(1.0, 0.0, 0.5, FOLLOW))
     window = DynamicWindow(ROUND, DwaConfig(), PERIOD)
-    assert not window.admits(scene, [(pose, twist)], Twist(1.0, 0.0))
+    assert not window.admits(scene, [StopStart(pose, twist, PERIOD)], Twist(1.0, 0.0))
     choice = window.choose(pose, twist, scene)
     assert choice.command is not None
     assert choice.command.v > 0.9
@@ -229,14 +229,14 @@ def test_without_room_in_the_window_there_is_one_sample():
 
 
 def test_a_stop_is_certified_from_every_state_given():
-    near_wall = (Pose2D(5.2, 4.0, 0.0), Twist(1.0, 0.0))
-    far = (Pose2D(2.0, 4.0, 0.0), Twist(1.0, 0.0))
+    near_wall = StopStart(Pose2D(5.2, 4.0, 0.0), Twist(1.0, 0.0), PERIOD)
+    far = StopStart(Pose2D(2.0, 4.0, 0.0), Twist(1.0, 0.0), PERIOD)
     scene, window = scene_of(boxed((6.0, 0.0, 6.2, 8.0))), DynamicWindow(ROUND, DwaConfig(), PERIOD)
     for stops, admitted in (
         ([far], True), ([near_wall], False), ([near_wall, far], False), ([far, near_wall], False)
     ):  # fmt: skip
         assert window.admits(scene, stops, Twist(1.0, 0.0)) == admitted
-        choice = window.choose(*far, scene, stops)
+        choice = window.choose(far.pose, far.twist, scene, stops)
         assert (choice.refusals["no certified stop"] == 0) == admitted
 
 
@@ -269,7 +269,7 @@ def slow_choice(rules, state, scene, choice):
             slew(state.v, v, limits.v_accel, limits.v_brake, PERIOD),
             slew(state.omega, omega, limits.omega_accel, limits.omega_brake, PERIOD),
         )
-        code = certified_stop(scene, rules, state, command)
+        code = certified_stop(scene, rules, state, command, PERIOD)
         if code == ADMISSIBLE:
             code = rests_in_time(scene, rules, state, command)
         short = schedule.held * schedule.period

@@ -103,14 +103,30 @@ def test_stops_are_certified_for_every_latency_up_to_the_declared_one(latency):
     state = RobotState(3 * period, pose, twist)
     acting = commands.when_one_acts(state)
     stops = commands.stops_from(state, acting, commands.carried_on(acting[1]))
-    assert len(stops) == 1 + math.ceil(latency / 0.1)
-    assert stops[-1][0] == acting[0]
+    assert len(stops) == 1 + 3 * math.ceil(latency / 0.1)
+    assert stops[-1].pose == acting[0]
     for true in np.linspace(0.0, latency, 6):
         expected, _ = commands.when_one_acts(state, float(true))
-        near = min(math.dist(expected[:2], stop[:2]) for stop, _ in stops)
+        near = min(math.dist(expected[:2], stop.pose[:2]) for stop in stops)
         assert near <= 0.5 * 0.1 * 0.55 + 1e-9
-    for _, (v, _) in stops:
-        assert v >= twist.v
+    for stop in stops:
+        assert stop.twist.v >= twist.v
+        assert period - 1e-9 <= stop.hold <= period + latency + 1e-9
+    assert stops[0].hold == pytest.approx(period + latency)  # it acts at once, the next one late
+    assert stops[-1].hold == pytest.approx(period)
+
+
+def test_commands_under_way_may_act_alone_until_the_next_one_acts():
+    limits, period, latency = ROBOTS["jackal"].limits, 0.1, 0.3
+    commands = Commands(limits, period, latency)
+    pose, twist = Pose2D(0.0, 0.0, 0.0), Twist(0.5, 0.0)
+    for k, omega in enumerate((0.0, 0.4, 0.8)):
+        commands.send(RobotState(k * period, pose, twist), Twist(0.5, omega))
+    state = RobotState(3 * period, pose, twist)
+    acting = commands.when_one_acts(state)
+    headings = [stop.pose.theta for stop in commands.stops_from(state, acting, acting[1])]
+    assert min(headings) == pytest.approx(0.0)  # the oldest alone: straight on
+    assert max(headings) > acting[0].theta + 0.05  # the newest alone turns more than expected
 
 
 @pytest.mark.parametrize(("declared", "true"), [(0.3, 0.0), (0.3, 0.1), (0.2, 0.2)])

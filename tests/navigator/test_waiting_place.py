@@ -5,6 +5,7 @@ import math
 import pytest
 
 from driving import ROUND, Drive, room
+from dynastar.errors import GoalObstructed
 from dynastar.geometry import Goal
 from dynastar.navigator.waiting_place import WAIT_WITHIN
 from dynastar.perception import MovingObstacle
@@ -43,6 +44,28 @@ def test_an_obstacle_at_the_goal_that_never_moves_ends_the_mission_in_time():
     drive.until("blocked", seconds=120.0)
     assert drive.now - began == pytest.approx(4 * 6.0, abs=3.0)
     assert OCCUPIED in drive.status.reason
+
+
+def test_an_obstacle_at_the_goal_that_comes_and_goes_ends_the_mission_in_time(monkeypatch):
+    """Noise may open and shut a goal: every two seconds a plan succeeds, but the robot gets nowhere."""
+    drive = drive_to(GOAL)
+    drive.tick()
+    plan = drive.navigator.planners.plan
+
+    def at_times(*arguments):
+        if int(drive.now / 2.0) % 2:
+            raise GoalObstructed(OCCUPIED)
+        return plan(*arguments)
+
+    monkeypatch.setattr(drive.navigator.planners, "plan", at_times)
+    monkeypatch.setattr(drive.navigator.route, "_is_blocked", lambda: True)
+    monkeypatch.setattr(drive.navigator.planners, "mark", lambda patch: True)
+    while drive.status.state != "blocked":
+        drive.navigator.command(drive.state, drive.scan())  # it does not move
+        drive.now += 0.1
+        assert drive.now < 100.0
+    assert OCCUPIED in drive.status.reason
+    assert drive.now > 40.0
 
 
 def test_a_person_at_the_goal_is_waited_for_without_limit():

@@ -34,21 +34,23 @@ def keeps_clear(closed, body, margin, start, pose, arc):
 
 
 @inner
-def certified_stop(scene, rules, state, command):
-    """ADMISSIBLE if the robot can come to rest in observed-free space after a period of ``command``.
+def certified_stop(scene, rules, state, command, hold):
+    """ADMISSIBLE if the robot can come to rest in observed-free space after ``hold`` s of ``command``.
 
-    Over the period each speed changes at its own limit; then both ramp to zero in proportion, along
-    one arc. ``state`` is that in which the command begins to act. All speeds may be greater than said
-    by ``drive_error``, and so are the ways.
+    Over a period each speed changes at its own limit; after ``hold``, if that is longer, both ramp to
+    zero in proportion, along one arc. ``state`` is that in which the command begins to act. All speeds
+    may be greater than said by ``drive_error``, and so are the ways.
     """
     closed, margin = scene.closed, scene.margin_to_closed
     body, limits, start = rules.body, rules.fast_limits, state.pose
     half, more = 0.5 * rules.period, 1.0 + rules.drive_error
+    longer = max(hold - rules.period, 0.0)
     v, omega = more * command[0], more * command[1]
     state = State(start, more * state.v, more * state.omega)
-    for _ in range(2):
-        after = driven(state, v, omega, limits, half)
-        arc = 0.5 * half * (state.v + after.v), 0.5 * half * (state.omega + after.omega)
+    for duration in (half, half, longer):
+        after = driven(state, v, omega, limits, duration)
+        mean = 0.5 * duration
+        arc = mean * (state.v + after.v), mean * (state.omega + after.omega)
         if not keeps_clear(closed, body, margin, start, state.pose, arc):
             return NO_STOP
         state = after

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from dynastar.dwa import admissible
 from dynastar.dwa.config import DwaConfig, Weights
-from dynastar.dwa.motion import STATE, state_at
+from dynastar.dwa.motion import STOP_START, state_at
 from dynastar.dwa.rollout import ROW, Schedule, schedule_of
 from dynastar.dwa.scene import AT_REST, Manoeuvre, Scene
 from dynastar.dwa.search import CANDIDATE, SAMPLES, is_admissible, search
@@ -19,7 +19,17 @@ from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import Limits, Robot
 
 Floats = npt.NDArray[np.float64]
-Stops = Sequence[tuple[Pose2D, Twist]]
+
+
+class StopStart(NamedTuple):
+    """Pose and twist when a command may begin to act, and for how long (s) it may act."""
+
+    pose: Pose2D
+    twist: Twist
+    hold: float
+
+
+Stops = Sequence[StopStart]
 TERMS = Terms._fields
 REFUSALS = {
     admissible.NO_STOP: "no certified stop",
@@ -142,9 +152,9 @@ class DynamicWindow:
     def choose(self, pose: Pose2D, twist: Twist, scene: Scene, stops: Stops = ()) -> Choice:
         """The best admissible command from ``pose`` and ``twist``.
 
-        Stops are certified from each of the poses and twists ``stops``, or from these if there are none.
+        Stops are certified from each of ``stops``, or from ``pose`` and ``twist`` if there are none.
         """
-        stops_from = _records(stops or [(pose, twist)])
+        stops_from = _records(stops or [StopStart(pose, twist, self.rules.period)])
         n, best = search(
             scene, self.rules, state_at(*pose, *twist), stops_from, self._candidates, self._rows
         )
@@ -198,6 +208,6 @@ class DynamicWindow:
 
 
 def _records(stops: Stops) -> npt.NDArray[np.void]:
-    """Poses and twists as STATE records."""
-    states = [state_at(*pose, *twist) for pose, twist in stops]
-    return np.array([(*state.pose, state.v, state.omega) for state in states], STATE)
+    """Stops as STOP_START records."""
+    states = [(state_at(*pose, *twist), hold) for pose, twist, hold in stops]
+    return np.array([(*at.pose, at.v, at.omega, hold) for at, hold in states], STOP_START)

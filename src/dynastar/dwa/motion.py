@@ -25,12 +25,13 @@ class State(NamedTuple):
     omega: float
 
 
-STATE = np.dtype([(name, np.float64) for name in (*Pose._fields, "v", "omega")])
+# Where a stop begins: the state when a command begins to act, and for how long (s) it may act.
+STOP_START = np.dtype([(name, np.float64) for name in (*Pose._fields, "v", "omega", "hold")])
 
 
 @inner
 def state_of(record):
-    """The state that a STATE record holds."""
+    """The state of a STOP_START record."""
     return State(Pose(record.x, record.y, record.cos, record.sin), record.v, record.omega)
 
 

@@ -35,10 +35,10 @@ CANDIDATE = np.dtype(
 def search(scene, rules, state, stops_from, candidates, rows):
     """Fill ``candidates`` and score them by Eq. 9; returns how many there are, and the best or -1.
 
-    Stops are certified from the STATE records ``stops_from``. Where a command does not rest in time before
-    moving obstacles by their hard bound, a manoeuvre that begins with it is admissible only if it is
-    clear of them, as they are expected to go on, for as long as a stop takes: from whatever comes
-    later the robot can still be at rest. ``rows`` is room for a roll-out.
+    Stops are certified from the STOP_START records ``stops_from``. Where a command does not rest in
+    time before moving obstacles by their hard bound, a manoeuvre that begins with it is admissible
+    only if it is clear of them, as they are expected to go on, for as long as a stop takes: from
+    whatever comes later the robot can still be at rest. ``rows`` is room for a roll-out.
     """
     gap = least_clearance(scene.distance_to_obstacle, rules.body, state.pose) - scene.margin
     write(rows[0], state, gap, True)
@@ -102,7 +102,8 @@ def refusal(scene, rules, stops_from, command):
     The last of ``stops_from`` is the state in which the command is expected to begin to act.
     """
     for i in range(len(stops_from)):
-        code = certified_stop(scene, rules, state_of(stops_from[i]), command)
+        begin = stops_from[i]
+        code = certified_stop(scene, rules, state_of(begin), command, begin.hold)
         if code != ADMISSIBLE:
             return code
     return rests_in_time(scene, rules, state_of(stops_from[-1]), command)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from dynastar.dwa.dwa import StopStart
 from dynastar.dwa.motion import coast, state_at
 from dynastar.geometry import Pose2D, Twist
 from dynastar.navigator.drive_check import DriveCheck
@@ -91,8 +92,10 @@ class Commands:
             if span > 1e-9:
                 commands.append(twist)
                 durations.append(span)
-        if not durations:
-            return state.pose, state.twist
+        return self._driven(state, commands, durations) if durations else (state.pose, state.twist)
+
+    def _driven(self, state: RobotState, commands: list[Twist], durations: list[float]) -> Acting:
+        """Pose and twist after each of the commands has acted for its duration (s)."""
         now = state_at(*state.pose, *state.twist)
         after, turned = coast(now, np.array(commands), np.array(durations), self.limits)
         pose = Pose2D(after.pose.x, after.pose.y, state.pose.theta + turned)
@@ -112,19 +115,24 @@ class Commands:
         omega = min(max(self._last.omega, measured.omega - off_omega), measured.omega + off_omega)
         return Twist(v, omega)
 
-    def stops_from(self, state: RobotState, acting: Acting, twist: Twist) -> list[Acting]:
-        """The poses and twists from which a stop has to be certified, the declared latency's last.
+    def stops_from(self, state: RobotState, acting: Acting, twist: Twist) -> list[StopStart]:
+        """From where a stop has to be certified; the last is that of the declared latency.
 
-        A latency may be less than declared, and differ from tick to tick: one every LATENCY_STEP.
-        The twist is the greater of the measured one and ``twist``, that from which the command
-        goes on.
+        A command may act at once, or at the declared latency at the latest, one after the other; the
+        times in between are LATENCY_STEP apart. Until then the robot follows the commands under way as
+        expected, or the oldest or the newest of them alone. The next command may come the latest. The
+        twist is the greater of the measured one and ``twist``, that from which the command goes on.
         """
-        steps = math.ceil(self.latency / LATENCY_STEP - 1e-9)
-        states = [self.when_one_acts(state, self.latency * k / steps) for k in range(steps)]
-        return [
-            (pose, Twist(max(v, twist.v, key=abs), max(omega, twist.omega, key=abs)))
-            for pose, (v, omega) in [*states, acting]
-        ]
+        steps, found = math.ceil(self.latency / LATENCY_STEP - 1e-9), []
+        for k in range(steps + 1):
+            latency = self.latency * k / max(steps, 1)
+            expected = acting if k == steps else self.when_one_acts(state, latency)
+            alone = self._sent[:: max(len(self._sent) - 1, 1)] if latency > 0.0 else []
+            ways = [self._driven(state, [command], [latency]) for _, command in alone]
+            for pose, (v, omega) in [*ways, expected]:
+                greater = Twist(max(v, twist.v, key=abs), max(omega, twist.omega, key=abs))
+                found.append(StopStart(pose, greater, self.period + self.latency - latency))
+        return found
 
     def send(self, state: RobotState, command: Twist | None) -> Twist:
         """Notes a command that has a certified stop; None carries the last one's stop on."""

@@ -63,7 +63,8 @@ class Route:
         self._forgotten = 0
         self._stand = Path(np.zeros((1, 2)))  # where the robot waits while there is no path
         self.waits_because = NO_PATH
-        self._waits_since = math.inf  # s, for an obstacle at the goal
+        self._waited = 0.0  # s, for an obstacle at the goal
+        self._obstructed_at = -math.inf
         self._someone = False  # a moving obstacle is at the goal
 
     def set_map(self, planners: Planners) -> None:
@@ -78,8 +79,7 @@ class Route:
         """Another goal, or a path that is ``given`` and only followed."""
         self.path, self.s, self._given = None, 0.0, given
         self._planned = self._unsure = False
-        self._no_path_since, self._forgotten = None, 0
-        self._waits_since = math.inf
+        self._no_path_since, self._forgotten, self._waited = None, 0, 0.0
 
     def drop(self) -> None:
         """Forget the path and what was sensed, so that the next tick plans anew."""
@@ -111,7 +111,7 @@ class Route:
         """
         self._someone = someone
         if someone:
-            self._waits_since = state.stamp
+            self._waited = 0.0
         since = state.stamp - self._planned_at
         if self.path is None:
             if self._given is not None:
@@ -199,8 +199,6 @@ class Route:
 
     def _take(self, plan: Plan, goal: Goal, reason: str) -> None:
         path, self._is_short = self._part_to_drive(plan, goal)
-        if not self._is_short:
-            self._waits_since = math.inf
         self.path, self.s = turned_path(path, -self._yaw), 0.0
         self.plan, self.plan_id, self.reason = plan, self.plan_id + 1, reason
 
@@ -219,13 +217,14 @@ class Route:
         """No path on the planning map: what was sensed may be gone, so forget it and plan again.
 
         The route is blocked where nothing was sensed, and after ``attempts`` to forget it. Near an
-        obstructed goal the robot waits as long, and without limit for a moving obstacle, and forgets
-        nothing, for it sees the obstacle.
+        obstructed goal the robot waits as long in all, and without limit for a moving obstacle, and
+        forgets nothing, for it sees the obstacle.
         """
         is_near = isinstance(error, GoalObstructed)
         if is_near:
-            self._waits_since = min(self._waits_since, state.stamp)
-            if state.stamp - self._waits_since > self.config.attempts * self.config.stuck_time:
+            self._waited += min(state.stamp - self._obstructed_at, REPLAN_PERIOD)
+            self._obstructed_at = state.stamp
+            if self._waited > self.config.attempts * self.config.stuck_time:
                 return RouteEvent(blocked=str(error), error=error)
         sensed = isinstance(error, NoPath) and bool(self.planners.planning_map.seen.any())
         if not (is_near or sensed):
