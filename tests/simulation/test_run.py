@@ -29,7 +29,8 @@ from dynastar.simulation import (
     Scenario,
     run,
 )
-from dynastar.simulation.run import effective_config, start_pose
+from dynastar.simulation.run import effective_config
+from dynastar.simulation.start import start_pose
 
 QUICK = Robot("quick", Limits(1.0, 1.0, 5.0, 5.0, 5.0, 5.0), Footprint.disc(0.3))
 GRID = OccupancyGrid.from_occupied(np.zeros((20, 20), bool))

@@ -255,3 +255,32 @@ def test_walkers_of_a_callers_own_are_stepped_seen_and_touched():
     assert world.contact == "resting"
     assert world.time == pytest.approx(2.0 - 0.25 - 0.3, abs=0.011)
     assert walker.advanced == world.time
+
+
+def test_a_world_begins_where_its_scenario_does():
+    assert World(scenario()).pose == Pose2D(*scenario().start)
+    assert World(scenario(), (3.0, 4.0, 0.5)).pose == Pose2D(3.0, 4.0, 0.5)
+
+
+@pytest.mark.parametrize("start", [(4.0, 5.0, None), Pose2D(4.0, 5.0, None), (4, 5)])
+def test_a_start_without_a_heading_faces_the_goal(start):
+    where = replace(scenario(), goals=(Goal(4.0, 9.0),))
+    world = World(where, start)
+    assert world.pose == pytest.approx((4.0, 5.0, math.pi / 2))
+    world.place(Pose2D(6.0, 5.0, None))
+    assert world.pose == pytest.approx((6.0, 5.0, math.pi - math.atan2(4.0, 2.0)))
+    assert World(replace(where, goals=()), start).pose == (4.0, 5.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("start", "words"),
+    [
+        ((math.nan, 1.0, 0.0), "the start is \\(nan, 1.0, 0.0\\): expected finite numbers"),
+        ((1.0, 1.0, math.inf), "expected finite numbers"),
+        ("here", "the start is 'here': expected \\(x, y\\)"),
+        (1.0, "the start is 1.0: expected \\(x, y\\)"),
+    ],
+)
+def test_a_start_that_is_none_is_refused(start, words):
+    with pytest.raises(InputError, match=words):
+        World(scenario(), start)

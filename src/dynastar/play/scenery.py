@@ -14,7 +14,7 @@ from dynastar.play.walkers import RADIUS, from_now, gone, walker
 from dynastar.simulation import Mover, Scenario, World
 from dynastar.simulation.contact import placed_footprint
 from dynastar.simulation.movers import Movers
-from dynastar.simulation.run import start_pose
+from dynastar.simulation.start import start_pose
 
 Floats = npt.NDArray[np.float64]
 

@@ -20,7 +20,7 @@ from dynastar.ros.middleware import make, message_class
 from dynastar.ros.node import FRAMES, FRAMES_FIXED, LATCHED
 from dynastar.ros.outgoing import Messages
 from dynastar.simulation import Scenario, World
-from dynastar.simulation.run import start_pose
+from dynastar.simulation.start import start_pose
 
 ORIGIN = Pose2D(0.0, 0.0, 0.0)  # of odom in map: the simulated odometry does not drift
 TIMEOUT = 0.5  # s without a command after which the drive stops, as the robots' own do

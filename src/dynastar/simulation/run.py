@@ -3,7 +3,6 @@
 import math
 import sys
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from dataclasses import replace
 from time import perf_counter
 from typing import Any, Protocol
@@ -11,7 +10,7 @@ from typing import Any, Protocol
 from tqdm import tqdm
 
 from dynastar.episode import Episode
-from dynastar.errors import InputError, PlanningError, ScenarioError
+from dynastar.errors import InputError, ScenarioError
 from dynastar.geometry import Pose2D, Twist
 from dynastar.planning.explain import explained
 from dynastar.robot import stopping_time
@@ -19,6 +18,7 @@ from dynastar.simulation.fault_injector import FaultInjector
 from dynastar.simulation.loop_timer import LoopTimer
 from dynastar.simulation.record import Recorder
 from dynastar.simulation.scenario import Scenario
+from dynastar.simulation.start import start_pose
 from dynastar.simulation.tracing import Tracer
 from dynastar.simulation.warming import warm_up
 from dynastar.simulation.world import World
@@ -84,8 +84,6 @@ def drive(
 
     if not scenario.goals:
         raise ScenarioError(f"the scenario '{scenario.name}' has no goal: expected one or more")
-    if not all(math.isfinite(number or 0.0) for number in scenario.start):
-        raise ScenarioError(f"the start is {scenario.start}: expected finite numbers")
     seed = scenario.seed if seed is None else seed
     config = effective_config(scenario)
     world = make_world(scenario, start_pose(scenario), seed)
@@ -173,26 +171,6 @@ def effective_config(scenario: Scenario) -> Any:
         "heading_error": max(config.heading_error, noise.heading_bound),
     }
     return configured(scenario.preset, {**overrides, **bounds})
-
-
-def start_pose(scenario: Scenario) -> Pose2D:
-    """Where the robot stands at first: without a heading, it faces the first leg of a plan.
-
-    Where nothing can be planned, it faces the goal.
-    """
-    from dynastar.planning import plan
-
-    x, y, heading = scenario.start
-    if heading is not None:
-        return Pose2D(x, y, heading)
-    goal = scenario.goals[0]
-    towards, radius = (goal.x, goal.y), scenario.robot.footprint.circumscribed
-    with suppress(PlanningError):
-        path = plan(scenario.grid, (x, y), towards, radius=radius, unknown=scenario.unknown).path
-        onward = path.points[path.arc > 1e-6]
-        if len(onward):
-            towards = (float(onward[0, 0]), float(onward[0, 1]))
-    return Pose2D(x, y, math.atan2(towards[1] - y, towards[0] - x))
 
 
 class Referee:

@@ -20,6 +20,7 @@ from dynastar.simulation.lidar import LidarSimulator
 from dynastar.simulation.movers import Movers, gap_to_discs
 from dynastar.simulation.noise import cut_gaussian
 from dynastar.simulation.scenario import Scenario
+from dynastar.simulation.start import start_pose
 
 Floats = npt.NDArray[np.float64]
 Contact = Literal["", "moving", "resting"]
@@ -45,14 +46,15 @@ class World:
     ``drive`` is the simulated drive. ``clearance`` is the smallest gap between footprint and anything since
     the last ``step`` began; ``contact`` says what a touch was, and the world then stands still.
     ``late`` are the movers of a scenario with ``attention = "late"``, whose bumps are no contact.
-    ``walkers`` replace the scenario's crowd.
+    ``walkers`` replace the scenario's crowd. The robot begins at ``start``, (x, y, heading) in metres and
+    radians, by default the scenario's; see ``start_pose`` for a heading of None.
     Raises ScenarioError for obstacles, movers or a seed that no world can be made of.
     """
 
     def __init__(
         self,
         scenario: Scenario,
-        start: Pose2D,
+        start: Sequence[float | None] | None = None,
         seed: int | None = None,
         walkers: Walkers | None = None,
     ) -> None:
@@ -63,7 +65,7 @@ class World:
         senses = np.random.SeedSequence(seed).spawn(3)
         self._scenario, self._robot = scenario, scenario.robot
         self._solids = Solids(grid, scenario.obstacles)
-        self.time, self.pose = 0.0, start
+        self.time, self.pose = 0.0, start_pose(scenario, start)
         self._crowd = walkers
         if walkers is None and scenario.crowd:
             footprint = scenario.robot.footprint
@@ -172,7 +174,7 @@ class World:
 
     def place(self, pose: Pose2D) -> None:
         """Puts the robot somewhere else; its speeds stay."""
-        self.pose = pose
+        self.pose = start_pose(self._scenario, pose)
         self._look(self.twist, thoroughly=True)
 
     def step(self, command: Twist, duration: float) -> None:

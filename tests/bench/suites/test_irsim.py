@@ -9,7 +9,7 @@ from dynastar.bench.missions import Mission, Options
 from dynastar.bench.suites import load_suite
 from dynastar.errors import DataError
 from dynastar.geometry import Twist
-from dynastar.simulation.run import start_pose
+from dynastar.simulation.start import start_pose
 from scripted import Still
 
 

@@ -23,7 +23,8 @@ from dynastar.geometry import Pose2D
 from dynastar.robot import Footprint, Lidar, box
 from dynastar.simulation import ControlLoop, Drivetrain, Noise, World
 from dynastar.simulation.contact import Solids
-from dynastar.simulation.run import effective_config, start_pose
+from dynastar.simulation.run import effective_config
+from dynastar.simulation.start import start_pose
 from scripted import Still
 
 SOME = (1, 12, 29, 46, 55)  # five robots on five maps
