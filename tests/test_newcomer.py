@@ -9,6 +9,8 @@ import pytest
 import dynastar
 from dynastar import (
     ROBOTS,
+    DynastarWarning,
+    Footprint,
     Goal,
     GridFrame,
     InputError,
@@ -20,10 +22,14 @@ from dynastar import (
     Path,
     PlannerConfig,
     Pose2D,
+    Robot,
+    Scenario,
+    World,
     plan,
 )
 from dynastar.config import self_checking
 from dynastar.dwa.config import DwaConfig, Weights
+from dynastar.errors import ConfigError
 
 GRID = OccupancyGrid(np.zeros((80, 80), bool), GridFrame(0.1))
 LIMITS = Limits(1.0, 1.5, 0.8, 2.0, 0.8, 2.0)
@@ -182,3 +188,49 @@ def test_a_program_of_a_users_own_passes_strict_type_checks(tmp_path):
     words = [sys.executable, "-m", "mypy", "--strict", "--config-file=", "program.py"]
     found = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert "no issues" in found.stdout, found.stdout
+
+
+def test_a_wrong_robot_is_told_the_nearest_name():
+    with pytest.raises(
+        KeyError, match=r"^unknown robot 'turtlebot' \(did you mean 'turtlebot3_burger'"
+    ):
+        ROBOTS["turtlebot"]
+    with pytest.raises(
+        InputError, match=r"\(legal: jackal, paper, pioneer3dx, turtlebot3_burger\)"
+    ):
+        ROBOTS[3]
+    assert ROBOTS.get("turtlebot") is None
+    assert "turtlebot" not in ROBOTS
+
+
+def test_a_radius_and_a_speed_make_a_robot_that_drives():
+    robot = Robot.simple(0.2, 0.8)
+    assert robot.footprint.circumscribed == 0.2
+    assert (robot.limits.v_max, robot.limits.v_accel, robot.limits.v_brake) == (0.8, 0.8, 0.8)
+    navigator = Navigator(GRID, robot)
+    navigator.set_goal((6.0, 6.0))
+    world = World(Scenario("hall", GRID, robot, (2.0, 2.0, None), (Goal(6.0, 6.0),)))
+    for _ in range(40):
+        world.step(navigator.command(world.sensed_state(), world.scan()), 0.1)
+    assert np.hypot(world.pose.x - 2.0, world.pose.y - 2.0) > 1.0
+    with pytest.raises(ConfigError, match=r"'Limits.v_max' is 0 m/s"):
+        Robot.simple(0.2, 0)
+    with pytest.raises(ConfigError, match=r"radius is -1"):
+        Robot.simple(-1, 1.0)
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: Footprint.disc(25),
+        lambda: Footprint.polygon([(30, -20), (30, 20), (-30, 20), (-30, -20)]),
+        lambda: Robot.simple(25, 1.0),
+    ],
+)
+def test_a_footprint_of_many_metres_is_questioned(make):
+    with pytest.warns(DynastarWarning, match=r"reaches (25|36.0555) m .*: lengths are in metres"):
+        make()
+
+
+def test_a_footprint_of_a_truck_is_not_questioned():
+    assert Footprint.disc(5.0).is_disc  # warnings are errors here

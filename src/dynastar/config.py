@@ -47,6 +47,7 @@ class Field(NamedTuple):
 
 
 _ANY = Field("")  # a value of any size
+LONGEST_TEXT = 400  # characters of what ``print`` shows of an object
 _REPR = reprlib.Repr()  # looks at the start of long and deep values only
 _REPR.maxstring = _REPR.maxother = _REPR.maxlong = 80
 _REPR.maxlevel = 3
@@ -59,6 +60,20 @@ def shown(value: Any) -> str:
     except ValueError:  # an integer of thousands of digits
         text = f"a huge {type(value).__name__}"
     return text if len(text) <= 80 else f"{text[:77]}..."
+
+
+def summary(thing: Any, *facts: str) -> str:
+    """Text of an object for ``print``: its class and facts about it, at most 400 characters."""
+    return _cut(f"<{type(thing).__name__}: {', '.join(filter(None, facts))}>")
+
+
+def counted(count: int, one: str) -> str:
+    """``count`` of a thing in words, as "2 goals"; nothing for none."""
+    return f"{count} {one}{'' if count == 1 else 's'}" if count else ""
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= LONGEST_TEXT else f"{text[: LONGEST_TEXT - 4]}...{text[-1]}"
 
 
 def nearest(name: str, legal: Iterable[str]) -> str:
@@ -93,7 +108,7 @@ def self_checking(cls: type[T]) -> type[T]:
     """A class decorator for a NamedTuple of settings: what it is made of is cast and checked.
 
     As by ``checked``, also by ``_replace``. An int where a float is declared becomes one, so that no
-    kernel is compiled again for it.
+    kernel is compiled again for it. ``repr`` shows what differs from the defaults.
     """
     names: tuple[str, ...] = cls._fields  # type: ignore[attr-defined]
     defaults: dict[str, Any] = cls._field_defaults  # type: ignore[attr-defined]
@@ -114,7 +129,13 @@ def self_checking(cls: type[T]) -> type[T]:
     def replaced(self: Any, **changes: Any) -> Any:
         return type(self)(**{**self._asdict(), **changes})
 
+    def text(self: Any) -> str:
+        pairs = zip(names, self, strict=True)
+        given = (f"{k}={v!r}" for k, v in pairs if k not in defaults or v != defaults[k])
+        return _cut(f"{cls.__name__}({', '.join(given)})")
+
     cls.__new__ = new  # type: ignore[method-assign, assignment]
+    cls.__repr__ = text  # type: ignore[method-assign]
     cls._replace = replaced  # type: ignore[attr-defined]
     return cls
 

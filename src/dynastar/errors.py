@@ -13,6 +13,12 @@ class ConfigError(InputError):
     """A setting has a wrong name, type or value."""
 
 
+class UnknownRobot(ConfigError, KeyError):  # noqa: N818 - the name says it
+    """No robot has that name."""
+
+    __str__ = Exception.__str__  # KeyError's quotes the message
+
+
 class MapError(InputError):
     """A map file is missing, malformed, truncated or too large."""
 

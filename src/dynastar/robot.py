@@ -1,6 +1,7 @@
 """The robot: what it may do, what room it takes, and how it moves (section IV.A, Eq. 4, Fig. 4)."""
 
 import math
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -9,8 +10,8 @@ from typing import Annotated, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.config import Field, self_checking
-from dynastar.errors import ConfigError
+from dynastar.config import Field, nearest, self_checking, summary
+from dynastar.errors import ConfigError, DynastarWarning, UnknownRobot
 from dynastar.geometry import Pose2D, Twist, wrap_angle
 
 
@@ -69,6 +70,7 @@ class Lidar(NamedTuple):
         return Pose2D(self.x, self.y, self.theta)
 
 
+LARGE = 5.0  # m, the radius above which a footprint is perhaps not in metres
 PIECES = 4  # that a polygon is cut into for its covering discs
 
 
@@ -76,12 +78,29 @@ PIECES = 4  # that a polygon is cut into for its covering discs
 class Footprint:
     """The room the robot takes, round its centre of rotation: a disc, or a convex polygon.
 
-    ``vertices`` is (0, 2) for a disc and (n, 2), counter-clockwise, metres, for a polygon.
+    ``vertices`` is (0, 2) for a disc and (n, 2), counter-clockwise, metres, for a polygon. Warns
+    (DynastarWarning) of a footprint that reaches more than 5 m from its centre.
     """
 
     vertices: npt.NDArray[np.float64]
     circumscribed: float
     inscribed: float
+
+    def __post_init__(self) -> None:
+        if self.circumscribed > LARGE:
+            words = f"a footprint reaches {self.circumscribed:g} m from its centre: lengths are in metres"
+            warnings.warn(words, DynastarWarning, stacklevel=4)
+
+    def __repr__(self) -> str:
+        return f"<Footprint: {self.words()}>"
+
+    def words(self) -> str:
+        """Its shape and size in words."""
+        if self.is_disc:
+            return f"disc of radius {self.circumscribed:g} m"
+        length, width = np.ptp(self.vertices, axis=0)
+        corners = len(self.vertices)
+        return f"polygon of {corners} corners, {length:.3g} m long, {width:.3g} m wide"
 
     @staticmethod
     def disc(radius: float) -> "Footprint":
@@ -160,12 +179,38 @@ def _readonly(array: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class Robot:
-    """A differential-drive robot: its limits, its footprint and the lidar it carries."""
+    """A differential-drive robot: its limits, its footprint and the lidar it carries.
+
+    ``Robot.simple`` is enough to begin with.
+    """
 
     name: str
     limits: Limits
     footprint: Footprint
     lidar: Lidar = Lidar()
+
+    def __repr__(self) -> str:
+        limits, lidar = self.limits, self.lidar
+        return summary(
+            self,
+            f"{self.name!r:.80}",
+            f"{limits.v_min:g} to {limits.v_max:g} m/s, {limits.omega_max:g} rad/s",
+            f"brakes at {limits.v_brake:g} m/s2",
+            self.footprint.words(),
+            f"lidar of {lidar.beams} beams to {lidar.range_max:g} m",
+        )
+
+    @staticmethod
+    def simple(radius: float, v_max: float, name: str = "simple") -> "Robot":
+        """A disc of ``radius`` (m) that drives ``v_max`` (m/s) at most, with usual values for the rest.
+
+        It takes 1 s to reach ``v_max`` and 1 s to stop from it, reverses at a quarter of ``v_max``,
+        turns at 1.5 rad/s at most, and takes 0.5 s to reach and to leave that. Its lidar has 360
+        beams all round, at the centre, up to 10 m. The no-contact guarantee needs the true braking
+        limits: declare measured ones before a real robot drives.
+        """
+        limits = Limits(v_max, 1.5, v_max, 3.0, v_max, 3.0, v_min=-0.25 * v_max)
+        return Robot(name, limits, Footprint.disc(radius), Lidar(range_max=10.0))
 
 
 def box(length: float, width: float) -> Footprint:
@@ -174,36 +219,48 @@ def box(length: float, width: float) -> Footprint:
     return Footprint.polygon([(x, -y), (x, y), (-x, y), (-x, -y)])
 
 
-ROBOTS: dict[str, Robot] = {
-    # Table II; braking is not printed, so as accelerating, nor is v_min: the preset paper takes 0.
-    "paper": Robot(
-        "paper",
-        Limits(1.5, 0.5, 0.2, 0.3, 0.2, 0.3, v_min=-0.5),
-        Footprint.disc(0.3),
-        Lidar(360, math.tau),
-    ),
-    # [Robotis]: 0.22 m/s and 2.84 rad/s; LDS-01, 360 beams, 0.12 to 3.5 m, 32 mm behind the axle.
-    "turtlebot3_burger": Robot(
-        "turtlebot3_burger",
-        Limits(0.22, 2.84, 2.5, 3.2, 2.5, 3.2, v_min=-0.22),
-        Footprint.disc(0.105),
-        Lidar(360, math.tau, 0.12, 3.5, x=-0.032),
-    ),
-    # [BARN]: 0.508 x 0.430 m, 2 m/s, 4 rad/s, 720 beams over 270 degrees.
-    "jackal": Robot(
-        "jackal",
-        Limits(2.0, 4.0, 20.0, 25.0, 20.0, 25.0, v_min=-0.5),
-        box(0.508, 0.430),
-        Lidar(720, math.radians(270.0), 0.1, 30.0, x=0.12),
-    ),
-    # [MRPB]: radius 0.25 m, 0.55 m/s, 1 rad/s, 2.5 m/s2, 3.2 rad/s2.
-    "pioneer3dx": Robot(
-        "pioneer3dx",
-        Limits(0.55, 1.0, 2.5, 3.2, 2.5, 3.2, v_min=-0.2),
-        Footprint.disc(0.25),
-        Lidar(720, math.tau, 0.05, 10.0),
-    ),
-}
+class Robots(dict[str, Robot]):
+    """Robots by name; a wrong name raises UnknownRobot, which names the nearest right one."""
+
+    def __missing__(self, name: object) -> Robot:
+        raise UnknownRobot(f"unknown robot '{name!s:.80}'{nearest(str(name), self)}")
+
+    def __repr__(self) -> str:
+        return summary(self, *self)
+
+
+ROBOTS = Robots(
+    {
+        # Table II; braking is not printed, so as accelerating, nor is v_min: the preset paper takes 0.
+        "paper": Robot(
+            "paper",
+            Limits(1.5, 0.5, 0.2, 0.3, 0.2, 0.3, v_min=-0.5),
+            Footprint.disc(0.3),
+            Lidar(360, math.tau),
+        ),
+        # [Robotis]: 0.22 m/s and 2.84 rad/s; LDS-01, 360 beams, 0.12 to 3.5 m, 32 mm behind the axle.
+        "turtlebot3_burger": Robot(
+            "turtlebot3_burger",
+            Limits(0.22, 2.84, 2.5, 3.2, 2.5, 3.2, v_min=-0.22),
+            Footprint.disc(0.105),
+            Lidar(360, math.tau, 0.12, 3.5, x=-0.032),
+        ),
+        # [BARN]: 0.508 x 0.430 m, 2 m/s, 4 rad/s, 720 beams over 270 degrees.
+        "jackal": Robot(
+            "jackal",
+            Limits(2.0, 4.0, 20.0, 25.0, 20.0, 25.0, v_min=-0.5),
+            box(0.508, 0.430),
+            Lidar(720, math.radians(270.0), 0.1, 30.0, x=0.12),
+        ),
+        # [MRPB]: radius 0.25 m, 0.55 m/s, 1 rad/s, 2.5 m/s2, 3.2 rad/s2.
+        "pioneer3dx": Robot(
+            "pioneer3dx",
+            Limits(0.55, 1.0, 2.5, 3.2, 2.5, 3.2, v_min=-0.2),
+            Footprint.disc(0.25),
+            Lidar(720, math.tau, 0.05, 10.0),
+        ),
+    }
+)
 
 
 def arc(pose: Pose2D, twist: Twist, duration: float) -> Pose2D:
