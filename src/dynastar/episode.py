@@ -7,8 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar import notebook
+from dynastar.config import counted, shown, summary
 from dynastar.grid import OccupancyGrid
-from dynastar.path import Trajectory
+from dynastar.path import Trajectory, ends_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -21,6 +22,13 @@ class PlanRecord(NamedTuple):
     points: Floats
     explored: npt.NDArray[np.int32]
 
+    def __repr__(self) -> str:
+        made = f"made at {self.stamp:.2f} s ({shown(self.reason)})"
+        points = counted(len(self.points), "point")
+        return summary(
+            self, made, points, ends_of(self.points), f"{len(self.explored)} cells explored"
+        )
+
 
 class EventRecord(NamedTuple):
     """Something that happened: ``kind`` is 'recovery', 'state', 'contact', ...; ``detail`` in words."""
@@ -28,6 +36,9 @@ class EventRecord(NamedTuple):
     stamp: float
     kind: str
     detail: str
+
+    def __repr__(self) -> str:
+        return summary(self, f"{shown(self.kind)} at {self.stamp:.2f} s", shown(self.detail))
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +64,11 @@ class Trace:
     reasons: npt.NDArray[np.str_]
     seen: npt.NDArray[np.int32]
     seen_frame: tuple[float, float, float, float]
+
+    def __repr__(self) -> str:
+        candidates, refused = len(self.candidates), np.count_nonzero(self.refused)
+        ticks = counted(len(self.reasons), "tick")
+        return summary(self, ticks, f"{candidates} candidates, {refused} of them refused")
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +109,25 @@ class Episode:
     config: dict[str, Any] = field(default_factory=dict)
     scenario: dict[str, Any] = field(default_factory=dict)
     trace: Trace | None = None
+
+    def __repr__(self) -> str:
+        times = self.trajectory.times
+        gaps = self.clearance[np.isfinite(self.clearance)]
+        return summary(
+            self,
+            f"{self.outcome} ({shown(self.reason)})",
+            f"contact ({self.contact})" if self.contact else "",
+            f"{times[-1] - times[0]:.1f} s and {self.trajectory.length:.2f} m driven by {shown(self.robot)}"
+            if len(times)
+            else "nothing driven",
+            counted(len(times), "tick"),
+            f"clearance at least {gaps.min():.2f} m" if len(gaps) else "",
+            counted(len(self.goals), "goal"),
+            counted(len(self.plans), "plan"),
+            counted(len(self.obstacles), "unmapped obstacle"),
+            counted(len(self.mover_radii), "mover"),
+            "with its trace" if self.trace is not None else "",
+        )
 
     def _repr_html_(self) -> str:
         """The replay as a notebook shows it: the page of ``dynastar view`` in a frame."""

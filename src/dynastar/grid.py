@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple, TypeVar, get_args
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.config import summary
 from dynastar.errors import ConfigError, MapError, OutOfMap
 
 FREE, OCCUPIED, UNKNOWN = 0, 100, -1
@@ -118,6 +119,17 @@ class OccupancyGrid:
         if self.speed_limit is not None and not (self.speed_limit > 0).all():
             raise MapError("a speed limit has to be > 0 m/s; use keepout where nothing may drive")
 
+    def __repr__(self) -> str:
+        occupied, unknown = self.occupied.mean(), self.unknown.mean()
+        return summary(
+            self,
+            self.size(),
+            self.extent(),
+            f"{occupied:.1%} occupied, {unknown:.1%} unknown",
+            "" if self.keepout is None else f"{self.keepout.mean():.1%} keep-out",
+            "" if self.speed_limit is None else f"{self.speed_limit.min():g} m/s at the slowest",
+        )
+
     @staticmethod
     def from_occupied(
         occupied: npt.ArrayLike, resolution: float = 1.0, x: float = 0.0, y: float = 0.0
@@ -222,6 +234,10 @@ class OccupancyGrid:
         """
         row, column = self.numbered(i)
         return self.resolution * (column + 0.5), self.resolution * (row + 0.5)
+
+    def size(self) -> str:
+        """In words, how many cells the map has, and how large they are."""
+        return f"{self.columns} x {self.rows} cells of {self.resolution:g} m"
 
     def extent(self) -> str:
         """In words, which stretch of the world the map covers."""

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar import smoothness
+from dynastar.config import counted, shown, summary
 from dynastar.episode import Episode
 from dynastar.path import turning_points
 
@@ -57,6 +58,21 @@ class Metrics(NamedTuple):
     angular_acceleration: float | None
     omega_changes: float | None
     circles: int
+
+    def __repr__(self) -> str:
+        gap, time = self.min_clearance, self.time
+        return summary(
+            self,
+            f"{self.outcome} ({shown(self.reason)})",
+            "" if time is None else f"{time:.1f} s",
+            f"{self.length:.2f} m",
+            counted(self.turning_points, "turning point"),
+            "" if gap is None else f"clearance at least {gap:.2f} m",
+            counted(self.contacts_moving + self.contacts_resting, "contact"),
+            counted(self.replans, "replan"),
+            counted(self.goals_reached, "goal")
+            and f"{counted(self.goals_reached, 'goal')} reached",
+        )
 
 
 def measure(episode: Episode) -> Metrics:

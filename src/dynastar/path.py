@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.config import shown
+from dynastar.config import counted, shown, summary
 from dynastar.errors import InputError
 
 Floats = npt.NDArray[np.float64]
@@ -36,6 +36,14 @@ def bends(points: npt.ArrayLike) -> Floats:
     return np.asarray(begins[1:][turned > TURN_ANGLE] + origin, dtype=np.float64)
 
 
+def ends_of(points: Floats) -> str:
+    """In words, from where to where a polyline (n, 2 or more) leads; nothing for none."""
+    if len(points) == 0:
+        return ""
+    (x, y), (to_x, to_y) = points[[0, -1], :2]
+    return f"from ({x:.2f}, {y:.2f}) to ({to_x:.2f}, {to_y:.2f}) m"
+
+
 @dataclass(frozen=True, eq=False)
 class Path:
     """A polyline in the map frame: ``points`` (n >= 1, 2) in metres, ``arc`` (n,) the length so far.
@@ -62,6 +70,10 @@ class Path:
         for name, array in (("points", points), ("arc", arc)):
             array.flags.writeable = False
             object.__setattr__(self, name, array)
+
+    def __repr__(self) -> str:
+        points, turns = counted(len(self.points), "point"), counted(self.turns, "turning point")
+        return summary(self, f"{self.length:.2f} m", points, turns, ends_of(self.points))
 
     @property
     def length(self) -> float:
@@ -129,6 +141,14 @@ class Trajectory:
     times: Floats
     poses: Floats
     twists: Floats
+
+    def __repr__(self) -> str:
+        if len(self.times) == 0:
+            return summary(self, "no poses")
+        steps = np.diff(self.poses[:, :2], axis=0)
+        length, seconds = np.nansum(np.hypot(*steps.T)), self.times[-1] - self.times[0]
+        poses = counted(len(self.poses), "pose")
+        return summary(self, f"{length:.2f} m in {seconds:.1f} s", poses, ends_of(self.poses))
 
     @property
     def path(self) -> Path:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.config import shown
+from dynastar.config import shown, summary
 from dynastar.errors import InputError
 from dynastar.geometry import Pose2D
 
@@ -47,6 +47,19 @@ class LaserScan:
             raise InputError(f"a scan of {shown(self.ranges)}: {error}; expected numbers") from None
         ranges.flags.writeable = False
         object.__setattr__(self, "ranges", ranges)
+
+    def __repr__(self) -> str:
+        found = self.readings()
+        hits, unknown = found[np.isfinite(found)], np.isnan(found).sum()
+        span = math.degrees(abs(self.angle_increment)) * max(len(found) - 1, 0)
+        return summary(
+            self,
+            f"{len(found)} beams over {span:.0f} degrees",
+            f"{len(hits)} hits from {hits.min():.2f} m on" if len(hits) else "no hits",
+            f"{unknown} without information" if unknown else "",
+            f"range {self.range_min:g} to {self.range_max:g} m",
+            f"at {self.stamp:g} s",
+        )
 
     @property
     def angles(self) -> npt.NDArray[np.float64]:

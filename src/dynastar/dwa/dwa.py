@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.config import shown, summary
 from dynastar.dwa import admissible
 from dynastar.dwa.config import DwaConfig, Weights
 from dynastar.dwa.motion import STOP_START, state_at
@@ -129,6 +130,16 @@ class Choice:
     terms: Floats
     score: Floats
     limited_by: str
+
+    def __repr__(self) -> str:
+        chosen = "stop"
+        if self.command is not None:
+            chosen = f"{self.command.v:.2f} m/s and {self.command.omega:.2f} rad/s"
+        admissible_ones = (
+            f"{np.isfinite(self.score).sum()} of {len(self.score)} candidates admissible"
+        )
+        limited = f"limited by {shown(self.limited_by)}" if self.limited_by else ""
+        return summary(self, chosen, admissible_ones, limited)
 
 
 class DynamicWindow:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy.typing as npt
 
+from dynastar.config import counted, shown, summary
 from dynastar.dwa.config import DwaConfig
 from dynastar.dwa.dwa import Choice
 from dynastar.geometry import Goal, Pose2D, Twist, as_goals
@@ -58,6 +59,11 @@ class Navigator:
         self._commands = Commands(robot.limits, config.period, config.latency)
         self.route = Route(self._planners_on(planning_map), config)
         self.retune(config.dwa)
+
+    def __repr__(self) -> str:
+        mission = f"{self.mission.state} ({shown(self.mission.reason)})"
+        left = counted(len(self.mission.goals), "goal")
+        return summary(self, f"robot {shown(self.robot.name)}", mission, left, self._grid.size())
 
     @property
     def planning_map(self) -> PlanningMap:

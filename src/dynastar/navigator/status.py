@@ -6,6 +6,7 @@ from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
+from dynastar.config import counted, shown, summary
 from dynastar.dwa.dwa import Choice
 from dynastar.errors import PlanningError
 from dynastar.geometry import Pose2D, Twist
@@ -85,3 +86,15 @@ class Status:
     goals_left: int = 0
     error: PlanningError | None = None
     choice: Choice | None = None
+
+    def __repr__(self) -> str:
+        return summary(
+            self,
+            f"{self.state} ({shown(self.reason)})",
+            counted(self.goals_left, "goal") and f"{counted(self.goals_left, 'goal')} left",
+            "" if self.plan is None else f"plan {self.plan_id} of {self.plan.path.length:.2f} m",
+            counted(self.replans, "replan"),
+            counted(self.recoveries, "recover").replace("recovers", "recoveries"),
+            counted(len(self.tracks), "track"),
+            f"limited by {shown(self.limited_by)}" if self.limited_by else "",
+        )

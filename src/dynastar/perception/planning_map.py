@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.clearance import inflate
+from dynastar.config import summary
 from dynastar.grid import OccupancyGrid, Unknown
 from dynastar.masks import zone_around
 from dynastar.perception.detection import Known
@@ -51,6 +52,12 @@ class PlanningMap:
         self._unknown = self.grid.unknown & ~self._keepout
         near = inflate(self.grid.occupied, 1.0, outside_blocked=True)
         self.known = Known(near, self.frame)
+
+    def __repr__(self) -> str:
+        sensed = np.count_nonzero(self.blocked & ~self.prior)
+        return summary(
+            self, self.grid.size(), self.grid.extent(), f"{sensed} cells blocked by scans"
+        )
 
     @property
     def lattice(self) -> tuple[float, tuple[float, float]]:

@@ -59,6 +59,10 @@ class Track(NamedTuple):
     unseen: float
     still: float
 
+    def __repr__(self) -> str:
+        at = f"({self.x:.2f}, {self.y:.2f}) m, ({self.vx:.2f}, {self.vy:.2f}) m/s"
+        return f"<Track {self.id}: {self.state}, {at}, radius {self.radius:.2f} m, age {self.age:.1f} s>"
+
 
 class Tracker:
     """Tracks obstacles from scan to scan, and finds out which of them move.

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Annotated, Literal, NamedTuple
 
-from dynastar.config import Field, self_checking
-from dynastar.path import Path
+from dynastar.config import Field, counted, self_checking, summary
+from dynastar.path import Path, ends_of
 from dynastar.planning.heuristic import HeuristicConfig
 from dynastar.planning.search import Cells
 
@@ -49,3 +49,13 @@ class Plan:
     time_ms: float
     radius: float
     clear_from: float
+
+    def __repr__(self) -> str:
+        return summary(
+            self,
+            f"{self.path.length:.2f} m by {self.planner}",
+            counted(self.path.turns, "turning point"),
+            ends_of(self.path.points),
+            f"for a disc of radius {self.radius:.2f} m",
+            f"{self.expanded} cells expanded in {self.time_ms:.1f} ms",
+        )

@@ -6,7 +6,7 @@ import time
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.config import choose
+from dynastar.config import choose, summary
 from dynastar.errors import (
     ConfigError,
     GoalOccupied,
@@ -68,6 +68,10 @@ class GridPlanner:
             grid.blocked(unknown), self.radius / grid.resolution, cell
         )
         self._failed = False  # the last search found no way
+
+    def __repr__(self) -> str:
+        disc = f"for a disc of radius {self.radius:g} m"
+        return summary(self, self.config.planner, disc, self.grid.size(), self.grid.extent())
 
     @property
     def blocked(self) -> Mask:

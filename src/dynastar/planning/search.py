@@ -31,6 +31,9 @@ class SearchResult(NamedTuple):
     expanded: int
     explored: Cells | None
 
+    def __repr__(self) -> str:
+        return f"<SearchResult: {self.cost:.1f} cells long, {self.expanded} cells expanded>"
+
 
 class SearchGrid:
     """A grid prepared once and searched many times; nothing is cleared between searches.

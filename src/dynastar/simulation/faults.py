@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.config import nearest
+from dynastar.config import nearest, summary
 from dynastar.errors import ScenarioError
 from dynastar.geometry import Pose2D
 from dynastar.grid import OccupancyGrid
@@ -68,6 +68,11 @@ class Fault:
         name = needs.get(self.kind, "")
         if name and getattr(self, name) is None:
             raise ScenarioError(f"the fault {self.kind} needs a {name}")
+
+    def __repr__(self) -> str:
+        return summary(
+            self, self.kind, f"at {self.start:g} s for {self.duration:g} s, size {self.size:g}"
+        )
 
     def described(self) -> dict[str, Any]:
         """The fault as plain data, its grid left out."""

@@ -7,10 +7,11 @@ from typing import Annotated, Any, Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.config import Field, self_checking
+from dynastar.config import Field, counted, self_checking, shown, summary
 from dynastar.geometry import Goal
 from dynastar.grid import OccupancyGrid, Unknown
 from dynastar.navigator import NavigatorConfig, Preset
+from dynastar.path import ends_of
 from dynastar.robot import Robot
 from dynastar.simulation.faults import Fault
 from dynastar.simulation.imperfections import ControlLoop, Drivetrain, LidarDriver, Odometry
@@ -44,6 +45,10 @@ class Mover:
     points: Floats
     after: AfterLast = "back_and_forth"
 
+    def __repr__(self) -> str:
+        disc, keys = f"disc of radius {self.radius:g} m", counted(len(self.times), "keyframe")
+        return summary(self, disc, keys, ends_of(np.asarray(self.points)), f"then {self.after}")
+
 
 @dataclass(frozen=True, eq=False)
 class Pedestrian:
@@ -57,6 +62,11 @@ class Pedestrian:
     speed: float
     start: tuple[float, float]
     waypoints: Floats
+
+    def __repr__(self) -> str:
+        walks = f"{self.speed:g} m/s through {counted(len(self.waypoints), 'waypoint')}"
+        x, y = self.start
+        return summary(self, f"disc of radius {self.radius:g} m", walks, f"from ({x:g}, {y:g}) m")
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,3 +107,18 @@ class Scenario:
     preset: Preset = "default"
     navigator: Mapping[str, Any] = field(default_factory=dict)
     source: Mapping[str, Any] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        x, y, _ = self.start
+        things = (self.obstacles, "obstacle"), (self.movers, "mover"), (self.crowd, "pedestrian")
+        return summary(
+            self,
+            shown(self.name),
+            f"robot {shown(self.robot.name)} from ({x:g}, {y:g}) m",
+            counted(len(self.goals), "goal"),
+            self.grid.size(),
+            self.grid.extent(),
+            *(counted(len(some), name) for some, name in things),
+            counted(len(self.faults), "fault"),
+            f"at most {self.time_limit:g} s",
+        )

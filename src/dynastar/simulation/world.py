@@ -7,6 +7,7 @@ from typing import Literal, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.config import counted, shown, summary
 from dynastar.errors import InputError, ScenarioError
 from dynastar.geometry import Pose2D, Twist, wrap_angle
 from dynastar.navigator import RobotState
@@ -92,6 +93,19 @@ class World:
         self._solid_gap, self._travelled = 0.0, 0.0
         self.clearance = math.inf
         self._look(Twist(0.0, 0.0), thoroughly=True)
+
+    def __repr__(self) -> str:
+        (x, y, theta), (v, omega) = self.pose, self.twist
+        return summary(
+            self,
+            shown(self._scenario.name),
+            f"at {self.time:.2f} s",
+            f"robot at ({x:.2f}, {y:.2f}) m, {theta:.2f} rad, {v:.2f} m/s, {omega:.2f} rad/s",
+            f"clearance {self.clearance:.2f} m",
+            f"contact ({self.contact})" if self.contact else "",
+            counted(len(self.obstacles), "obstacle"),
+            counted(len(self.mover_radii), "mover"),
+        )
 
     @property
     def twist(self) -> Twist:
