@@ -1,15 +1,19 @@
 """The record of a run: data only, enough to draw it, measure it and run it again."""
 
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from dynastar import notebook
 from dynastar.config import counted, shown, summary
+from dynastar.extras import plotter
 from dynastar.grid import OccupancyGrid
 from dynastar.path import Trajectory, ends_of
+
+if TYPE_CHECKING:  # Matplotlib comes with an extra
+    from matplotlib.axes import Axes
 
 Floats = npt.NDArray[np.float64]
 
@@ -128,6 +132,13 @@ class Episode:
             counted(len(self.mover_radii), "mover"),
             "with its trace" if self.trace is not None else "",
         )
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw the mission on its map, in metres, into ``ax`` or new Matplotlib axes, and return them.
+
+        New axes have a bar with the colours of the speeds. Raises MissingPackage without Matplotlib.
+        """
+        return plotter("plot_episode")(self, ax)
 
     def _repr_html_(self) -> str:
         """The replay as a notebook shows it: the page of ``dynastar view`` in a frame."""

@@ -1,6 +1,8 @@
 """Packages that only some uses need; ``pip install 'dynastar[EXTRA]'`` installs them."""
 
 import importlib.util
+from collections.abc import Callable
+from typing import Any
 
 from dynastar.errors import MissingPackage
 
@@ -23,3 +25,12 @@ def require(extra: str, what: str) -> None:
     if not installed(extra):
         packages = ", ".join(EXTRAS[extra])
         raise MissingPackage(f"{what} {packages}: pip install 'dynastar[{extra}]'")
+
+
+def plotter(name: str) -> Callable[..., Any]:
+    """The function ``name`` of ``viewer.plots``, imported when something is drawn; MissingPackage.
+
+    Every layer has objects to draw, and the viewer, which lies above them, draws them.
+    """
+    plots: Any = importlib.import_module("dynastar.viewer.plots")
+    return getattr(plots, name)

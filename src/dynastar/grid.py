@@ -4,13 +4,17 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from numbers import Real
-from typing import Literal, NamedTuple, TypeVar, get_args
+from typing import TYPE_CHECKING, Literal, NamedTuple, TypeVar, get_args
 
 import numpy as np
 import numpy.typing as npt
 
 from dynastar.config import summary
 from dynastar.errors import ConfigError, MapError, OutOfMap
+from dynastar.extras import plotter
+
+if TYPE_CHECKING:  # Matplotlib comes with an extra
+    from matplotlib.axes import Axes
 
 FREE, OCCUPIED, UNKNOWN = 0, 100, -1
 OCCUPIED_FROM, FREE_TO = 65, 19  # of 100, as map_server's 0.65 and 0.196
@@ -129,6 +133,13 @@ class OccupancyGrid:
             "" if self.keepout is None else f"{self.keepout.mean():.1%} keep-out",
             "" if self.speed_limit is None else f"{self.speed_limit.min():g} m/s at the slowest",
         )
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw the map, in metres, into ``ax`` or new Matplotlib axes, and return them.
+
+        Raises MissingPackage without Matplotlib.
+        """
+        return plotter("plot_grid")(self, ax)
 
     @staticmethod
     def from_occupied(

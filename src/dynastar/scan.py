@@ -2,14 +2,18 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from dynastar.config import shown, summary
 from dynastar.errors import InputError
+from dynastar.extras import plotter
 from dynastar.geometry import Pose2D
+
+if TYPE_CHECKING:  # Matplotlib comes with an extra
+    from matplotlib.axes import Axes
 
 LEAST_INCREMENT = 1e-5  # rad
 RANGES_UP_TO = 1.001  # times range_max, up to which a reading counts as range_max
@@ -60,6 +64,14 @@ class LaserScan:
             f"range {self.range_min:g} to {self.range_max:g} m",
             f"at {self.stamp:g} s",
         )
+
+    def plot(self, ax: "Axes | None" = None, pose: Pose2D = Pose2D(0.0, 0.0, 0.0)) -> "Axes":
+        """Draw hits and free beams, in metres, into ``ax`` or new Matplotlib axes, and return them.
+
+        ``pose`` is the robot's in the frame of the axes, as in ``scan.plot(grid.plot(), pose)``.
+        Raises MissingPackage without Matplotlib.
+        """
+        return plotter("plot_scan")(self, ax, pose)
 
     @property
     def angles(self) -> npt.NDArray[np.float64]:

@@ -139,6 +139,9 @@ def test_a_large_map_takes_hardly_longer_than_a_small_one(office: Episode, tmp_p
     assert seconds(large) < 10.0 * seconds(office)
 
 
-def test_no_global_state_of_matplotlib(office: Episode, tmp_path: Path):
+def test_no_global_state_of_matplotlib(
+    office: Episode, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.delitem(sys.modules, "matplotlib.pyplot", raising=False)
     draw_episode(office, tmp_path / "office.png")
     assert "matplotlib.pyplot" not in sys.modules

@@ -1,12 +1,16 @@
 """The settings of a planner, and its result."""
 
 from dataclasses import dataclass
-from typing import Annotated, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 from dynastar.config import Field, counted, self_checking, summary
+from dynastar.extras import plotter
 from dynastar.path import Path, ends_of
 from dynastar.planning.heuristic import HeuristicConfig
 from dynastar.planning.search import Cells
+
+if TYPE_CHECKING:  # Matplotlib comes with an extra
+    from matplotlib.axes import Axes
 
 
 @self_checking
@@ -59,3 +63,10 @@ class Plan:
             f"for a disc of radius {self.radius:.2f} m",
             f"{self.expanded} cells expanded in {self.time_ms:.1f} ms",
         )
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw both paths, in metres, into ``ax`` or new Matplotlib axes, and return them.
+
+        ``plan.plot(grid.plot())`` draws them on the map. Raises MissingPackage without Matplotlib.
+        """
+        return plotter("plot_plan")(self, ax)

@@ -11,8 +11,8 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
+from matplotlib.colorbar import Colorbar
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from dynastar.episode import Episode
 from dynastar.grid import OccupancyGrid
@@ -34,12 +34,40 @@ NARROWEST, LOWEST = 5.5, 1.3  # inches: the picture, and the room for the map
 def draw_map(grid: OccupancyGrid, axes: Axes, view: View | None = None) -> list[Artist]:
     """Draws ``grid`` into ``axes`` in metres, all or what ``view`` shows; gives legend entries."""
     entries = layers.show_map(axes, grid, view or known_view(grid))
+    label_axes(axes)
+    return entries
+
+
+def label_axes(axes: Axes) -> None:
+    """Labels and ticks of axes in metres."""
     axes.set_xlabel("x, m", fontsize=8, color=palette.INK)
     axes.set_ylabel("y, m", fontsize=8, color=palette.INK)
     axes.tick_params(labelsize=8, colors=palette.INK, width=0.6, length=3)
     for spine in axes.spines.values():
         spine.set(linewidth=0.6, color=palette.INK)
-    return entries
+
+
+def episode_view(episode: Episode) -> View:
+    """What a picture of a mission shows: the map, or the part of it that the mission takes."""
+    plans = [plan.points for plan in episode.plans]
+    places = [episode.trajectory.poses[:, :2], episode.goals[:, :2], *plans]
+    return mission_view(episode.grid, places)
+
+
+def draw_mission(episode: Episode, axes: Axes, view: View) -> tuple[list[Artist], LineCollection]:
+    """Draws a mission into ``axes`` in metres; gives legend entries and the line coloured by speed."""
+    entries = draw_map(episode.grid, axes, view)
+    if episode.plans:
+        explored, frame = episode.plans[0].explored, scene.explored_frame(episode)
+        entries += layers.show_explored(axes, explored, frame, "explored by the first plan")
+    entries += layers.show_obstacles(axes, episode.obstacles)
+    entries += layers.show_movers(axes, episode, view)
+    entries += layers.show_plans(axes, episode.plans, view)
+    driven, more = layers.show_driven(axes, episode)
+    entries += more
+    entries += layers.show_goals(axes, episode)
+    entries += layers.show_contact(axes, episode)
+    return entries, driven
 
 
 def draw_plan(
@@ -61,17 +89,7 @@ def draw_plan(
     if plan.explored is not None:
         cells = np.asarray(plan.explored)
         entries += layers.show_explored(axes, cells, grid.frame, f"explored, {plan.expanded} cells")
-    grid_style: layers.Style = {"color": palette.LATER_PATHS[1], "linewidth": 1.6}
-    path_style: layers.Style = {"color": palette.FIRST_PATH, "linewidth": 2.0}
-    axes.plot(*plan.grid_path.points.T, zorder=4, **grid_style)
-    axes.plot(*points.T, zorder=5, **path_style)
-    entries += [
-        Line2D([], [], label=f"grid path, {plan.grid_path.length:.2f} m", **grid_style),
-        Line2D([], [], label=f"smoothed path, {plan.path.length:.2f} m", **path_style),
-    ]
-    reach = 0.03 * view.diagonal
-    layers.mark(axes, points[0], -scene.setting_out(points, reach), "S")
-    layers.mark(axes, points[-1], -scene.setting_out(points[::-1], reach), "G")
+    entries += layers.show_plan(axes, plan)
     turns = scene.count_words(plan.path.turns, "turning point")
     detail = f"{plan.path.length:.2f} m · {turns} · {plan.expanded} cells expanded"
     words = (f"Path planned by {plan.planner}", f"{detail} · {plan.time_ms:.1f} ms")
@@ -117,22 +135,9 @@ def draw_episode(
     suffix.
     """
     metrics = measure(episode)
-    plans = [plan.points for plan in episode.plans]
-    view = mission_view(
-        episode.grid, [episode.trajectory.poses[:, :2], episode.goals[:, :2], *plans]
-    )
+    view = episode_view(episode)
     figure, axes = _sheet()
-    entries = draw_map(episode.grid, axes, view)
-    if episode.plans:
-        explored, frame = episode.plans[0].explored, scene.explored_frame(episode)
-        entries += layers.show_explored(axes, explored, frame, "explored by the first plan")
-    entries += layers.show_obstacles(axes, episode.obstacles)
-    entries += layers.show_movers(axes, episode, view)
-    entries += layers.show_plans(axes, episode.plans, view)
-    driven, more = layers.show_driven(axes, episode)
-    entries += more
-    entries += layers.show_goals(axes, episode)
-    entries += layers.show_contact(axes, episode)
+    entries, driven = draw_mission(episode, axes, view)
     words = (f"{scene.name_of(episode)}: {scene.outcome_words(metrics)}", _detail(metrics))
     _lay_out(figure, axes, view, width, words, entries, driven)
     return _saved(figure, path, dpi)
@@ -216,7 +221,11 @@ def _lay_out(
 def _speed_bar(
     figure: Figure, speed: LineCollection, box: tuple[float, float, float, float]
 ) -> None:
-    bar = figure.colorbar(speed, cax=figure.add_axes(box))
+    label_speeds(figure.colorbar(speed, cax=figure.add_axes(box)))
+
+
+def label_speeds(bar: Colorbar) -> None:
+    """Label and ticks of a bar with the colours of the speeds."""
     bar.set_label("speed, m/s", fontsize=8, color=palette.INK)
     bar.ax.tick_params(labelsize=8, colors=palette.INK, width=0.6, length=3)
     bar.outline.set_visible(False)

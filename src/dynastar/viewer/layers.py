@@ -17,9 +17,10 @@ from matplotlib.transforms import Affine2D
 from dynastar.episode import Episode, PlanRecord
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.viewer import palette, scene
-from dynastar.viewer.view import LARGEST_IMAGE, View, averaged_down, map_image
+from dynastar.viewer.view import LARGEST_IMAGE, View, averaged_down, map_image, view_of
 
 if TYPE_CHECKING:
+    from dynastar.planning import Plan
     from dynastar.simulation.scenario import Mover
 
 Floats = npt.NDArray[np.float64]
@@ -106,6 +107,22 @@ def show_plans(
         for place, way, number in labels:
             _number(axes, place, way, number)
     return entries
+
+
+def show_plan(axes: Axes, plan: "Plan") -> list[Artist]:
+    """A plan's grid path and smoothed path, with S and G at its ends."""
+    points = plan.path.points
+    grid_style: Style = {"color": palette.LATER_PATHS[1], "linewidth": 1.6}
+    path_style: Style = {"color": palette.FIRST_PATH, "linewidth": 2.0}
+    axes.plot(*plan.grid_path.points.T, zorder=4, **grid_style)
+    axes.plot(*points.T, zorder=5, **path_style)
+    reach = 0.03 * view_of(points).diagonal
+    mark(axes, points[0], -scene.setting_out(points, reach), "S")
+    mark(axes, points[-1], -scene.setting_out(points[::-1], reach), "G")
+    return [
+        Line2D([], [], label=f"grid path, {plan.grid_path.length:.2f} m", **grid_style),
+        Line2D([], [], label=f"smoothed path, {plan.path.length:.2f} m", **path_style),
+    ]
 
 
 def _number(axes: Axes, place: Floats, way: Floats, number: str) -> None:
