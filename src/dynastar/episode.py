@@ -1,6 +1,7 @@
 """The record of a run: data only, enough to draw it, measure it and run it again."""
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -11,9 +12,11 @@ from dynastar.config import counted, shown, summary
 from dynastar.extras import plotter
 from dynastar.grid import OccupancyGrid
 from dynastar.path import Trajectory, ends_of
+from dynastar.table import as_dataframe, write_csv
 
-if TYPE_CHECKING:  # Matplotlib comes with an extra
+if TYPE_CHECKING:  # both come with extras
     from matplotlib.axes import Axes
+    from pandas import DataFrame
 
 Floats = npt.NDArray[np.float64]
 
@@ -139,6 +142,28 @@ class Episode:
         New axes have a bar with the colours of the speeds. Raises MissingPackage without Matplotlib.
         """
         return plotter("plot_episode")(self, ax)
+
+    def columns(self) -> dict[str, npt.NDArray[Any]]:
+        """One array (n,) per column of the ticks, by name; the names end in their units.
+
+        Poses and speeds are the true ones, commands what was asked of the drive.
+        """
+        driven = self.trajectory
+        columns: dict[str, npt.NDArray[Any]] = {"time_s": driven.times}
+        columns |= zip(("x_m", "y_m", "heading_rad"), driven.poses.T, strict=True)
+        columns |= zip(("v_mps", "omega_radps"), driven.twists.T, strict=True)
+        columns |= zip(("command_v_mps", "command_omega_radps"), self.commands.T, strict=True)
+        columns |= {"clearance_m": self.clearance, "command_ms": self.command_ms}
+        columns["state"] = self.states
+        return columns | ({"limited_by": self.limits} if len(self.limits) else {})
+
+    def to_dataframe(self) -> "DataFrame":
+        """A pandas DataFrame of the ticks, see ``columns``. Raises MissingPackage without pandas."""
+        return as_dataframe(self.columns())
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write the ticks, see ``columns``, to a CSV file with a line of names."""
+        write_csv(self.columns(), path)
 
     def _repr_html_(self) -> str:
         """The replay as a notebook shows it: the page of ``dynastar view`` in a frame."""

@@ -11,6 +11,7 @@ EXTRAS = {
     "bench": ("matplotlib", "scipy"),
     "bags": ("rosbags",),
     "play": ("starlette", "uvicorn", "websockets", "tomli_w"),
+    "pandas": ("pandas",),
     "ros": ("rclpy", "nav_msgs", "visualization_msgs", "diagnostic_msgs", "std_srvs"),
 }
 

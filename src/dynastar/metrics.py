@@ -1,5 +1,6 @@
 """Episode -> numbers: what a mission came to, in Table III's terms and some more."""
 
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -9,6 +10,7 @@ from dynastar import smoothness
 from dynastar.config import counted, shown, summary
 from dynastar.episode import Episode
 from dynastar.path import turning_points
+from dynastar.table import write_csv
 
 Floats = npt.NDArray[np.float64]
 
@@ -58,6 +60,10 @@ class Metrics(NamedTuple):
     angular_acceleration: float | None
     omega_changes: float | None
     circles: int
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write the numbers to a CSV file: a line of names and one of values."""
+        write_csv({name: [value] for name, value in self._asdict().items()}, path)
 
     def __repr__(self) -> str:
         gap, time = self.min_clearance, self.time
