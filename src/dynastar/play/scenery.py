@@ -14,7 +14,6 @@ from dynastar.play.walkers import RADIUS, from_now, gone, walker
 from dynastar.simulation import Mover, Scenario, World
 from dynastar.simulation.contact import placed_footprint
 from dynastar.simulation.movers import Movers
-from dynastar.simulation.start import start_pose
 
 Floats = npt.NDArray[np.float64]
 
@@ -35,7 +34,7 @@ class Scenery:
 
     def __init__(self, scenario: Scenario) -> None:
         self.scenario = scenario
-        self.world = World(_unattended(scenario), start_pose(scenario), scenario.seed)
+        self.world = World(_unattended(scenario))
         self._paint, self._rings = Paint(scenario.grid), scenario.obstacles
         self._movers = list(scenario.movers)
 

@@ -20,7 +20,6 @@ from dynastar.ros.middleware import make, message_class
 from dynastar.ros.node import FRAMES, FRAMES_FIXED, LATCHED
 from dynastar.ros.outgoing import Messages
 from dynastar.simulation import Scenario, World
-from dynastar.simulation.start import start_pose
 
 ORIGIN = Pose2D(0.0, 0.0, 0.0)  # of odom in map: the simulated odometry does not drift
 TIMEOUT = 0.5  # s without a command after which the drive stops, as the robots' own do
@@ -37,7 +36,7 @@ class SimulatorNode(Node):  # type: ignore[misc]
         for name in ("publish_scan", "publish_odom"):  # false is a fault to try
             self.declare_parameter(name, True)
         self.scenario = scenario
-        self.world = World(scenario, start_pose(scenario), scenario.seed)
+        self.world = World(scenario)
         self.contacts, self._out = 0, Messages(make)
         self._command, self._heard = Twist(0.0, 0.0), -math.inf
         self._map = self.create_publisher(GridMessage, "map", LATCHED)
