@@ -1,8 +1,11 @@
 """Episodes load back equal, and damage is told."""
 
+import contextlib
 import dataclasses
+import io
 import json
 import math
+import tracemalloc
 import zipfile
 from typing import Any
 
@@ -12,7 +15,8 @@ import pytest
 from dynastar.episode import Episode, Trace
 from dynastar.errors import DynastarWarning, EpisodeError, InputError
 from dynastar.geometry import Pose2D
-from dynastar.io import load_episode, save_episode, write_json, written_aside
+from dynastar.io import episode_file, load_episode, save_episode, write_json, written_aside
+from dynastar.io.archive import MAX_MEMBERS
 from episodes import episode
 
 
@@ -202,3 +206,96 @@ def test_what_fails_while_it_is_written_leaves_the_old_file(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
     with pytest.raises(InputError, match="cannot be written"), written_aside(path / "b") as aside:
         pytest.fail("there is no such folder")
+
+
+LARGE = 3 * 2**20  # bytes, three times what is read
+
+
+def npy(shape: tuple[int, ...], size: int, descr: str = "|i1") -> bytes:
+    """An ``.npy`` file that declares a shape, with ``size`` bytes of zeros."""
+    stream = io.BytesIO()
+    header = {"descr": descr, "fortran_order": False, "shape": shape}
+    np.lib.format.write_array_header_1_0(stream, header)
+    return stream.getvalue() + bytes(size)
+
+
+def replaced(path, name: str, content: bytes, other: str = "", method: int = 8) -> None:
+    """Replaces an archive's member by another, of the same name unless ``other`` is one."""
+    with zipfile.ZipFile(path) as archive:
+        members = {one: archive.read(one) for one in archive.namelist() if one != name}
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr(other or name, content, method)
+        for one, data in members.items():
+            archive.writestr(one, data)
+
+
+def most_allocated(path) -> int:
+    """Bytes that loading a file, or refusing it, takes at most."""
+    tracemalloc.start()
+    try:
+        with contextlib.suppress(EpisodeError):
+            load_episode(path)
+        return tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+
+
+@pytest.fixture
+def small_limits(monkeypatch):
+    monkeypatch.setattr(episode_file, "MAX_EPISODE_BYTES", LARGE // 3)
+    monkeypatch.setattr(episode_file, "MAX_HEADER_BYTES", LARGE // 3)
+
+
+def members_of(tmp_path) -> tuple[Any, list[str]]:
+    """An episode's file with every member that there is, and their names."""
+    path = tmp_path / "a.npz"
+    save_episode(traced(), path)
+    with zipfile.ZipFile(path) as archive:
+        return path, archive.namelist()
+
+
+@pytest.mark.filterwarnings("ignore:.*cut off:dynastar.errors.DynastarWarning")
+def test_no_member_is_unpacked_beyond_the_limit(tmp_path, small_limits):
+    _, names = members_of(tmp_path)
+    for name in names:
+        for other in ("", name.removesuffix(".npy"), f"{name}.npy", f"./{name}", f"{name}\0"):
+            path, _ = members_of(tmp_path)
+            replaced(path, name, npy((LARGE,), LARGE), other)
+            assert most_allocated(path) < LARGE // 2, (name, other)
+            whole = path.read_bytes()
+            path.write_bytes(whole[:-1])
+            assert most_allocated(path) < LARGE, (name, other, "cut off")
+
+
+def test_a_declared_size_or_shape_is_not_believed(tmp_path, small_limits):
+    _, names = members_of(tmp_path)
+    for name in names:
+        path, _ = members_of(tmp_path)
+        replaced(path, name, npy((LARGE,), LARGE))
+        whole = path.read_bytes()
+        sizes = len(npy((LARGE,), LARGE)).to_bytes(4, "little")
+        assert whole.count(sizes) == 2
+        path.write_bytes(whole.replace(sizes, (200).to_bytes(4, "little")))
+        assert most_allocated(path) < LARGE, name
+        for shape in ((2**50,), (2**50, 0), (2**20, 2**20)):
+            path, _ = members_of(tmp_path)
+            replaced(path, name, npy(shape, 8))
+            with pytest.raises(EpisodeError, match=r"a\.npz: "):
+                load_episode(path)
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
+def test_other_ways_to_compress_are_refused(tmp_path, method):
+    path, _ = members_of(tmp_path)
+    replaced(path, "values.npy", npy((4, 6), 24), method=method)
+    with pytest.raises(EpisodeError, match=r"'values\.npy' is not compressed as in an \.npz"):
+        load_episode(path)
+
+
+def test_an_archive_of_too_many_members_is_refused(tmp_path):
+    path, names = members_of(tmp_path)
+    with zipfile.ZipFile(path, "a") as archive:
+        for number in range(MAX_MEMBERS + 1 - len(names)):
+            archive.writestr(str(number), b"")
+    with pytest.raises(EpisodeError, match=f"more than {MAX_MEMBERS} members"):
+        load_episode(path)

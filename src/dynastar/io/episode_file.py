@@ -4,7 +4,6 @@
 an array of ``Episode`` by name, lists of them flattened with the rows of each counted.
 """
 
-import io
 import json
 import warnings
 import zipfile
@@ -18,7 +17,7 @@ from dynastar.config import shown
 from dynastar.episode import Episode, EventRecord, PlanRecord, Trace
 from dynastar.errors import DynastarWarning, EpisodeError, MapError
 from dynastar.grid import GridFrame, OccupancyGrid
-from dynastar.io.cut_archive import arrays_before_cut
+from dynastar.io.archive import Arrays, arrays_before_cut, arrays_in
 from dynastar.io.files import read_bytes, written_aside
 from dynastar.io.paths import local_path
 from dynastar.path import Trajectory
@@ -27,13 +26,11 @@ VERSION = 1
 MAX_EPISODE_BYTES = 2**29  # unpacked
 MAX_HEADER_BYTES = 2**24
 
-Arrays = dict[str, npt.NDArray[Any]]
-
 # Shape of every array: n ticks, m movers, k corners, -1 for any number.
 _SHAPES: dict[str, tuple[Any, ...]] = {
     "values": (-1, -1),
     "footprint": (-1, 2),
-    "goals": (-1, -1),
+    "goals": (-1, 3),
     "times": ("n",),
     "poses": ("n", 3),
     "twists": ("n", 2),
@@ -132,11 +129,7 @@ def load_episode(path: str | Path) -> Episode:
 def _read(data: bytes) -> tuple[Arrays, str]:
     """The arrays of a file with its header, and what was lost where the file was cut off, or ""."""
     try:
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            _check_sizes({member.filename: member.file_size for member in archive.infolist()})
-        with np.load(io.BytesIO(data), allow_pickle=False) as members:
-            names = [name for name in members.files if name in {*_KNOWN, "header"}]
-            return {name: members[name] for name in names}, ""
+        return arrays_in(data, {*_KNOWN, "header"}, MAX_EPISODE_BYTES), ""
     except zipfile.BadZipFile:
         arrays = arrays_before_cut(data, MAX_EPISODE_BYTES)
         if not arrays:
@@ -194,15 +187,9 @@ def _arrays(episode: Episode) -> Arrays:
     return arrays
 
 
-def _check_sizes(sizes: dict[str, int]) -> None:
-    """Raises EpisodeError if what the members hold, in bytes, is more than is read."""
-    if sizes.get("header.npy", 0) > MAX_HEADER_BYTES:
-        raise EpisodeError(f"unpacked, its header has more than {MAX_HEADER_BYTES} bytes")
-    if sum(sizes.get(f"{name}.npy", 0) for name in _KNOWN) > MAX_EPISODE_BYTES:
-        raise EpisodeError(f"unpacked, it has more than {MAX_EPISODE_BYTES} bytes")
-
-
 def _header(packed: npt.NDArray[Any]) -> dict[str, Any]:
+    if packed.nbytes > MAX_HEADER_BYTES:
+        raise EpisodeError(f"its header has more than {MAX_HEADER_BYTES} bytes")
     header = json.loads(packed.tobytes().decode("utf-8"))
     if not isinstance(header, dict) or header.get("format") != "dynastar episode":
         raise EpisodeError("this is not an episode of dynastar")

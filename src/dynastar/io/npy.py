@@ -7,9 +7,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+NUMBERS, TEXT_TOO = "biuf", "biufU"  # kinds of dtypes
+_WORDS = {NUMBERS: "numbers", TEXT_TOO: "numbers or text"}
 
-def read_npy(data: bytes) -> npt.NDArray[Any]:
-    """The array of numbers in a file's bytes; raises ValueError with what is wrong."""
+
+def read_npy(data: bytes, kinds: str = NUMBERS) -> npt.NDArray[Any]:
+    """The array in a file's bytes, of a dtype of these kinds; ValueError with what is wrong."""
     stream = io.BytesIO(data)
     try:
         version = np.lib.format.read_magic(stream)
@@ -19,9 +22,9 @@ def read_npy(data: bytes) -> npt.NDArray[Any]:
         shape, _, dtype = read(stream)
     except Exception as error:  # numpy's reader raises many kinds for damage
         raise ValueError(f"this is no NumPy array ({error!s:.80})") from None
-    if dtype.kind not in "biuf" or not all(type(size) is int and size >= 0 for size in shape):
+    if dtype.kind not in kinds or not all(type(size) is int and size >= 0 for size in shape):
         raise ValueError(
-            f"this is no array of numbers: its shape is {shape!s:.60}, of {dtype!s:.40}"
+            f"this is no array of {_WORDS[kinds]}: its shape is {shape!s:.60}, of {dtype!s:.40}"
         )
     size = math.prod(shape) * dtype.itemsize
     if len(data) - stream.tell() != size:
