@@ -209,6 +209,28 @@ def test_a_flood_and_a_page_that_takes_nothing_do_not_slow_the_robot(address):
     assert len(sent) > 1000
 
 
+def half_sent(address, count):
+    """Connections that have sent a part of a request each."""
+    port = int(address.split("/?")[0].rstrip("/").rpartition(":")[2])
+    opened = [socket.create_connection(("127.0.0.1", port), timeout=60) for _ in range(count)]
+    for one in opened:
+        one.sendall(f"GET / HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n".encode())
+    return opened
+
+
+def test_half_sent_requests_keep_nobody_out_and_are_closed(address):
+    opened = half_sent(address, 200)
+    try:
+        assert status_of(address)[0] == 200
+        assert Page(address).frame()["time"] >= 0.0
+        for one in opened:  # closed by the server: without this each would wait for its timeout
+            with contextlib.suppress(ConnectionResetError):
+                assert one.recv(1) == b""
+    finally:
+        for one in opened:
+            one.close()
+
+
 def test_a_port_that_is_taken_and_a_scene_that_is_none_are_one_line(address):
     port = address.rstrip("/").rpartition(":")[2]
     for words, says in (

@@ -24,6 +24,7 @@ from dynastar.errors import DynastarError, InputError
 from dynastar.io.scenario_writing import save_scenario
 from dynastar.page import report_html
 from dynastar.page.packing import filled
+from dynastar.play.connections import MOST_WAITING, Connection
 from dynastar.play.gate import Allowance, Gate
 from dynastar.play.loop import Loop, News
 from dynastar.play.messages import MOST_BYTES, read_message
@@ -39,7 +40,7 @@ HEADERS = {
     "frame-ancestors 'none'; form-action 'none'",
 }
 MOST_PAGES = 16  # connected at once
-MOST_CONNECTIONS = 64
+MOST_ANSWERS = 64  # given at once
 PATIENCE = 20.0  # s for a page to take what it is sent
 POLICY, BUSY = 1008, 1013  # codes of a WebSocket's close
 EVERYWHERE = ("0.0.0.0", "::")  # hosts that stand for all addresses of this machine
@@ -52,7 +53,7 @@ class Playground:
         self._gate, self._session = gate, session
         self._html = filled("play.html", "dynastar", SCRIPTS)
         self._pages: set[asyncio.Event] = set()
-        self._saving = asyncio.Semaphore(1)
+        self._saving, self._answers = asyncio.Semaphore(1), 0
         self._events: asyncio.AbstractEventLoop | None = None
         self._loop = Loop(session, self._told)
         self.app = Starlette(
@@ -94,10 +95,15 @@ class Playground:
             refusal = self._refusal(request)
             if refusal:
                 return PlainTextResponse(refusal + "\n", 403, HEADERS)
+            if self._answers >= MOST_ANSWERS:
+                return PlainTextResponse("too much is asked for at once\n", 503, HEADERS)
+            self._answers += 1
             try:
                 response: Response = await answer()
             except DynastarError as error:
                 response = PlainTextResponse(f"{error}\n", 409)
+            finally:
+                self._answers -= 1
             response.headers.update(HEADERS)
             return response
 
@@ -245,11 +251,11 @@ def serve(session: Session, host: str, port: int, ready: Callable[[str], None]) 
         log_level="error",
         access_log=False,
         server_header=False,
+        http=Connection,
         ws="websockets-sansio",
         ws_max_size=MOST_BYTES,
         ws_max_queue=8,
         ws_per_message_deflate=False,
-        limit_concurrency=MOST_CONNECTIONS,
         timeout_graceful_shutdown=2,
     )
     ready(f"http://{shown}:{gate.port}{query}")
@@ -263,7 +269,7 @@ def _listen(host: str, port: int) -> socket.socket:
         listening = socket.socket(family, socket.SOCK_STREAM)
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listening.bind((host, port))
-        listening.listen(MOST_CONNECTIONS)  # from now on connections wait until they are served
+        listening.listen(MOST_WAITING)  # from now on connections wait until they are served
         return listening
     except (OSError, UnicodeError) as error:
         if isinstance(error, OSError) and error.errno == errno.EADDRINUSE:
