@@ -3,9 +3,11 @@
 import itertools
 import json
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from dynastar.dwa.dwa import REFUSALS, TERMS
 from dynastar.geometry import Goal
@@ -13,6 +15,8 @@ from dynastar.io.files import jsonable
 from dynastar.page.packing import grid_data, packed, runs
 from dynastar.simulation import Scenario, World
 from dynastar.simulation.record import Recorder
+
+Floats = npt.NDArray[np.float64]
 
 _numbers = itertools.count(1)
 
@@ -28,11 +32,32 @@ class Journal:
         self.entries: list[str] = []
         self.frame = ""
         self._events = self._plans = 0
+        self._rings: dict[int, tuple[int, Floats]] = {}  # number and array, by the array's id
+        self._ring_numbers = itertools.count()
+        self._changes(scene["obstacles"])
         self.say("scene", **scene)
 
     def say(self, kind: str, **values: Any) -> None:
         """Adds an entry."""
         self.entries.append(_text({"type": kind, **values}))
+
+    def obstacles(self, rings: Sequence[Floats]) -> None:
+        """Adds which obstacles are gone and which are new; those of the scene are numbered from 0."""
+        gone, new = self._changes(rings)
+        if gone or new:
+            self.say("obstacles", gone=gone, new=[[k, np.round(ring, 4)] for k, ring in new])
+
+    def _changes(self, rings: Sequence[Floats]) -> tuple[list[int], list[tuple[int, Floats]]]:
+        """Numbers of the obstacles that are no more in ``rings``, and those that are new in it."""
+        now = {id(ring): ring for ring in rings}
+        gone = [self._rings.pop(key)[0] for key in list(self._rings) if key not in now]
+        new = {
+            key: (next(self._ring_numbers), ring)
+            for key, ring in now.items()
+            if key not in self._rings
+        }
+        self._rings |= new
+        return gone, list(new.values())
 
     def read(self, recorder: Recorder) -> None:
         """Adds the plans and events that are new in a recording."""

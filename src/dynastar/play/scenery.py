@@ -51,7 +51,7 @@ class Scenery:
         return replace(self.scenario, start=(x, y, heading), movers=there)
 
     def _change(self) -> None:
-        rings = (*self._rings, *self._paint.rings())
+        rings = (*self._rings, *self._paint.rings)
         self.scenario = replace(self.scenario, obstacles=rings, movers=tuple(self._movers))
         self.world.change(_unattended(self.scenario))
 
@@ -83,8 +83,9 @@ class Scenery:
             self._paint.keep_clear(
                 np.vstack([self.world.pose[:2], places]), np.r_[self._reach, radii] + CLEAR
             )
+        new = self._paint.renew()
         self._change()
-        if not message.erase and self._turn_back():
+        if not message.erase and new and self._turn_back(new):
             self._change()
 
     def _erase(self, message: ask.Stroke) -> None:
@@ -98,9 +99,9 @@ class Scenery:
             if np.isfinite(place).all() and shapely.Point(place).distance(brush) < radius:
                 self._movers[i] = gone(radius)
 
-    def _turn_back(self) -> bool:
+    def _turn_back(self, painted: list[Floats]) -> bool:
         """Shorten the lines of walkers that are painted over. Returns True if any are."""
-        solid, turned = shapely.union_all([shapely.Polygon(r) for r in self._paint.rings()]), False
+        solid, turned = shapely.union_all([shapely.Polygon(ring) for ring in painted]), False
         for i, place in enumerate(self._places()):
             mover = self._movers[i]
             line = shapely.LineString(np.vstack([mover.points, mover.points[-1:]]))

@@ -168,7 +168,7 @@ class Session:
 
     def _stroke(self, message: ask.Stroke) -> None:
         self.scenery.stroke(message)
-        self.journal.say("obstacles", rings=self.scenery.world.obstacles)
+        self.journal.obstacles(self.scenery.scenario.obstacles)
 
     def _set(self, message: ask.Setting) -> None:
         name, value = message

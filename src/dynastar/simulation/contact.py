@@ -10,6 +10,7 @@ from dynastar.errors import ScenarioError
 from dynastar.geometry import Pose2D
 from dynastar.grid import OccupancyGrid
 from dynastar.robot import Footprint
+from dynastar.simulation.rings import made_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -29,11 +30,13 @@ class Solids:
             *shapely.polygons(_placed(_box_corners(occupied_runs(grid)), grid)),
             shapely.linearrings(_placed(border, grid)[0]),
         ]
+        self._polygons: dict[int, tuple[Floats, shapely.Polygon]] = {}  # by the array's id
         self.change(obstacles)
 
     def change(self, obstacles: Sequence[Floats]) -> None:
         """Takes polygons (k, 2), metres, in place of the present ones; ScenarioError changes nothing."""
-        polygons = [_polygon(ring, f"obstacle {number}") for number, ring in enumerate(obstacles)]
+        self._polygons = made_of(obstacles, self._polygons, _polygon)
+        polygons = [polygon for _, polygon in self._polygons.values()]
         self._tree = shapely.STRtree([*self._mapped, *polygons])
 
     def gap(self, pose: Pose2D, footprint: Footprint) -> float:
@@ -81,7 +84,8 @@ def _placed(cells: npt.NDArray[np.int64], grid: OccupancyGrid) -> Floats:
     return grid.frame.points_to_world(cells).reshape(cells.shape)
 
 
-def _polygon(ring: Floats, what: str) -> shapely.Polygon:
+def _polygon(number: int, ring: Floats) -> shapely.Polygon:
+    what = f"obstacle {number}"
     points = np.asarray(ring, dtype=np.float64)
     if points.ndim != 2 or points.shape[0] < 3 or points.shape[1] != 2:
         raise ScenarioError(f"{what} has shape {points.shape}: expected (k >= 3, 2)")

@@ -14,6 +14,7 @@ from dynastar.scan import LaserScan
 from dynastar.simulation import lidar_kernels as kernels
 from dynastar.simulation.imperfections import LidarDriver
 from dynastar.simulation.noise import cut_gaussian
+from dynastar.simulation.rings import made_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -40,13 +41,16 @@ class LidarSimulator:
         self.lidar, self._driver = lidar, driver
         self._free = free_cells(grid)
         self._frame = tuple(map(float, grid.frame))
+        self._edges_of: dict[int, tuple[Floats, Floats]] = {}  # by the array's id
         self.change(obstacles)
         self._range_bound = range_bound
         self._random = random or np.random.default_rng(0)
 
     def change(self, obstacles: Sequence[Floats]) -> None:
         """Takes polygons (k, 2), metres, in place of the present ones."""
-        self._edges = np.concatenate([np.empty((0, 4)), *map(edges_of, obstacles)])
+        self._edges_of = made_of(obstacles, self._edges_of, lambda _, ring: edges_of(ring))
+        edges = [edges for _, edges in self._edges_of.values()]
+        self._edges = np.concatenate([np.empty((0, 4)), *edges])
 
     def scan(self, pose: Pose2D, stamp: float, discs: Floats = NO_DISCS) -> LaserScan:
         """Scan of a lidar of a robot at ``pose``; ``discs`` (m, 3) are x, y, radius in metres.

@@ -20,6 +20,7 @@ class Live {
     this.cellFrame = message.cellFrame;
     this.scene = { grid, map: mapCells(grid, colours()), radius: message.radius, footprint: message.footprint,
       goals: [], tolerance: message.tolerance, obstacles: message.obstacles };
+    this.rings = new Map(message.obstacles.entries());  // obstacles by their number
     this.seen = cellsOver(grid, this.cellFrame);
     this.explored = null;
     this.known = new Map();  // cells that are seen, to draw them again in other colours
@@ -31,6 +32,12 @@ class Live {
     this.trail = [];
     this.last = this.before = null;
     this.end = 0;
+  }
+
+  takeObstacles(message) {
+    for (const number of message.gone) this.rings.delete(number);
+    for (const [number, ring] of message.new) this.rings.set(number, ring);
+    this.scene.obstacles = [...this.rings.values()];
   }
 
   recolour() {
@@ -293,7 +300,7 @@ class Page {
   take(message) {
     const takes = { scene: () => this.open(message), settings: () => this.fill(message),
       plan: () => { this.live.takePlan(message); this.log(message.time, `path: ${message.reason}`); },
-      seen: () => this.live.takeSeen(message), obstacles: () => { this.live.scene.obstacles = message.rings; },
+      seen: () => this.live.takeSeen(message), obstacles: () => this.live.takeObstacles(message),
       event: () => this.log(message.time, message.text), frame: () => this.live.takeFrame(message),
       loop: () => this.clock(message), refused: () => this.say(message.reason) };
     takes[message.type]();
