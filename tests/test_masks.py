@@ -1,5 +1,7 @@
 """Keep-out zones and speed limits from masks of any resolution."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -30,6 +32,26 @@ def test_percentages_are_of_the_top_speed_and_zero_is_no_limit():
     assert limits[1].tolist() == pytest.approx([np.inf, np.inf, 0.2, 1.0, 0.5, np.inf])
     lower = with_speed_limits(with_speed_limits(GRID, mask, 2.0), mask, 2.0, absolute)
     assert lower.speed_limit[0].tolist() == pytest.approx([np.inf, np.inf, 0.2, 1.0, 0.5, np.inf])
+
+
+def test_masks_take_a_few_bytes_a_cell():
+    cells = 2000 * 1500
+    grid = OccupancyGrid(np.zeros((2000, 1500), np.int8), GridFrame(0.05, 0.0, 0.0, 0.4))
+    pixel = OccupancyGrid(np.full((1, 1), 100), GridFrame(0.5, 5.0, 30.0))
+    for lay in (
+        lambda: with_keepout(grid, pixel).keepout,
+        lambda: (
+            with_speed_limits(grid, pixel, 2.0, SpeedScale("absolute", 0.0, 0.01)).speed_limit < 9
+        ),
+    ):
+        tracemalloc.start()
+        marked = lay()
+        most = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        assert most < 20 * cells
+        assert marked.sum() == pytest.approx(100, abs=10)
+        places = grid.frame.points_to_world(np.argwhere(marked) + 0.5)
+        assert (np.abs(places - (5.25, 30.25)) <= 0.25 + 1e-9).all()
 
 
 def test_limits_below_zero_and_scales_that_are_none_are_refused():

@@ -11,6 +11,8 @@ from dynastar.config import Field, self_checking
 from dynastar.errors import MapError
 from dynastar.grid import OCCUPIED_FROM, OccupancyGrid
 
+AT_ONCE = 2**18  # cells that a mask is laid over at a time, to bound the memory
+
 
 @self_checking
 class SpeedScale(NamedTuple):
@@ -53,27 +55,37 @@ def with_speed_limits(
     Where the mask is unknown, 0 or absent there is no limit, nor where the scale says 0, as in Nav2.
     Raises MapError where it says less than that.
     """
-    values = _laid_over(grid, mask, 0).astype(np.float64)
-    limits = scale.base + scale.multiplier * values
-    limits[(values <= 0) | (limits == 0.0)] = math.inf
+    limits = cv2.LUT(_laid_over(grid, mask, 0).view(np.uint8), _limits_by_value(v_max, scale))
     if (limits < 0.0).any():
+        lowest = limits.min() / (0.01 * v_max if scale.type == "percent" else 1.0)
         raise MapError(
-            f"a speed mask has limits down to {limits.min():g} with base {scale.base:g} and "
+            f"a speed mask has limits down to {lowest:g} with base {scale.base:g} and "
             f"multiplier {scale.multiplier:g}: expected 0 or more"
         )
+    if grid.speed_limit is not None:
+        np.minimum(limits, grid.speed_limit, out=limits)
+    return OccupancyGrid(grid.values, grid.frame, grid.keepout, limits)
+
+
+def _limits_by_value(v_max: float, scale: SpeedScale) -> npt.NDArray[np.float32]:
+    """Speed limits (m/s) for each value of a mask as uint8, [256]; inf for none."""
+    values = np.arange(256, dtype=np.uint8).view(np.int8).astype(np.float64)
+    limits = scale.base + scale.multiplier * values
+    limits[(values <= 0) | (limits == 0.0)] = math.inf
     if scale.type == "percent":
         limits *= 0.01 * v_max
-    if grid.speed_limit is not None:
-        limits = np.minimum(limits, grid.speed_limit)
-    return OccupancyGrid(grid.values, grid.frame, grid.keepout, limits.astype(np.float32))
+    return limits.astype(np.float32)
 
 
 def _laid_over(grid: OccupancyGrid, mask: OccupancyGrid, outside: int) -> npt.NDArray[np.int8]:
     """The mask's value at the centre of each cell of ``grid``."""
-    cells = np.indices((grid.rows, grid.columns)).reshape(2, -1).T + 0.5
-    places = mask.frame.points_to_grid(grid.frame.points_to_world(cells))
-    rows, columns = np.floor(places).astype(np.int64).T
-    inside = (rows >= 0) & (rows < mask.rows) & (columns >= 0) & (columns < mask.columns)
-    values = np.full(len(cells), outside, np.int8)
-    values[inside] = mask.values[rows[inside], columns[inside]]
-    return values.reshape(grid.rows, grid.columns)
+    values = np.full((grid.rows, grid.columns), outside, np.int8)
+    step = max(1, AT_ONCE // grid.columns)
+    for first in range(0, grid.rows, step):
+        part = values[first : first + step]
+        centres = np.indices(part.shape).reshape(2, -1).T + (first + 0.5, 0.5)
+        places = mask.frame.points_to_grid(grid.frame.points_to_world(centres))
+        rows, columns = np.floor(places).astype(np.int64).T
+        inside = (rows >= 0) & (rows < mask.rows) & (columns >= 0) & (columns < mask.columns)
+        part[inside.reshape(part.shape)] = mask.values[rows[inside], columns[inside]]
+    return values
