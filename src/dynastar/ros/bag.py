@@ -1,8 +1,6 @@
 """Recordings: MCAP in rosbag2's form, written and read without ROS by the library rosbags."""
 
 import heapq
-import shutil
-import tempfile
 import warnings
 from collections.abc import Iterator
 from functools import cache
@@ -16,6 +14,7 @@ import numpy as np
 from dynastar.errors import DataError, DynastarWarning
 from dynastar.extras import require
 from dynastar.io.paths import local_path
+from dynastar.ros.aside import AsideFolder
 from dynastar.ros.cut_bag import has_journal, read_cut
 
 STORED_EVERY = 10**9  # ns after which what was written in place is on the disk
@@ -74,8 +73,8 @@ class BagWriter:
         if self.folder.exists():
             raise DataError(f"{folder} exists: a recording needs a new folder")
         self.folder.parent.mkdir(parents=True, exist_ok=True)
-        self._aside = Path(tempfile.mkdtemp(dir=self.folder.parent)) if aside else None
-        written = self.folder if self._aside is None else self._aside / self.folder.name
+        self._aside = AsideFolder(self.folder) if aside else None
+        written = self.folder if self._aside is None else self._aside.written
         version = Writer.VERSION_LATEST
         self._writer = Writer(written, version=version, storage_plugin=StoragePlugin.MCAP)
         self._writer.open()
@@ -109,8 +108,7 @@ class BagWriter:
         """Ends the recording and gives it its name."""
         self._writer.close()
         if self._aside is not None:
-            (self._aside / self.folder.name).rename(self.folder)
-            self._aside.rmdir()
+            self._aside.keep()
 
     def __enter__(self) -> "BagWriter":
         return self
@@ -125,7 +123,7 @@ class BagWriter:
             self.close()
         else:
             self._writer.abort()
-            shutil.rmtree(self._aside, ignore_errors=True)
+            self._aside.drop()
 
 
 class Recorded(NamedTuple):
