@@ -22,6 +22,8 @@ from made_up_suite import suite
         ("7:", [7, 8, 9]),
         ("::4", [0, 4, 8]),
         ("4:4", []),
+        ("3,7,20", [3, 7]),
+        ("7, 3,3", [3, 7]),
     ],
 )
 def test_select_is_a_slice(text: str, expected: list[int]) -> None:
@@ -29,7 +31,8 @@ def test_select_is_a_slice(text: str, expected: list[int]) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["", "a", "1:2:0", "1:2:-1", "-3", "-3:2", "1:2:3:4", "1.5", ":-2"]
+    "text",
+    ["", "a", "1:2:0", "1:2:-1", "-3", "-3:2", "1:2:3:4", "1.5", ":-2", "3,", "3,-1", "1,2:5"],
 )
 def test_select_that_is_none(text: str) -> None:
     with pytest.raises(InputError, match="--select"):
@@ -52,6 +55,16 @@ def test_every_number_asked_for_is_run_or_counted(
         number for number in asked if number in there - left_out
     ]
     assert len(chosen) + skipped == len(asked)
+
+
+def test_listed_numbers_are_run_or_counted_also_of_endless_missions() -> None:
+    made = suite(count, default=2, left_out={7})
+    chosen, skipped = choose_missions(made, Options(select="20,3,7"))
+    assert [mission.number for mission in chosen] == [3, 20]
+    assert skipped == 1
+    chosen, skipped = choose_missions(suite(lambda: [3, 9]), Options(select="3,7,20"))
+    assert [mission.number for mission in chosen] == [3]
+    assert skipped == 2
 
 
 def test_missions_counts_after_leaving_out() -> None:

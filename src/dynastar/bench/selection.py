@@ -5,11 +5,12 @@ Missions carry the suite's own numbers, rising; ``--select`` is a slice over tho
 and not run is counted as skipped.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from itertools import islice
 from typing import NamedTuple
 
 from dynastar.bench.missions import Mission, Options, Suite
+from dynastar.config import shown
 from dynastar.errors import InputError
 
 REPORT_SEEDS = 10_000  # the first seed that is for published tables only
@@ -27,13 +28,30 @@ class Slice(NamedTuple):
         return range(self.start, number if self.stop is None else min(self.stop, number), self.step)
 
 
-def parse_select(text: str) -> Slice:
-    """The slice that "A:B:C", with any part left out, or a bare "N" stands for; else InputError."""
+class Listed(NamedTuple):
+    """Numbers that are named, in order."""
+
+    numbers: tuple[int, ...]
+
+    @property
+    def stop(self) -> int:
+        """The number after the last."""
+        return self.numbers[-1] + 1
+
+    def until(self, number: int) -> Collection[int]:
+        """Numbers of the list below ``number``."""
+        return [one for one in self.numbers if one < number]
+
+
+def parse_select(text: str) -> Slice | Listed:
+    """The numbers that "A:B:C", with any part left out, or "N" or "N,N,N" stand for; else InputError."""
     parts = text.split(":")
     try:
+        if len(parts) == 1:
+            listed = Listed(tuple(sorted({int(part) for part in text.split(",")})))
+            if listed.numbers[0] >= 0:
+                return listed
         numbers = [int(part) if part.strip() else None for part in parts]
-        if len(parts) == 1 and numbers[0] is not None and numbers[0] >= 0:
-            return Slice(numbers[0], numbers[0] + 1, 1)
         start, stop, step = (*numbers, None, None)[:3]
         if 2 <= len(parts) <= 3 and (start or 0) >= 0 and (stop or 0) >= 0:
             chosen = Slice(start or 0, stop, 1 if step is None else step)
@@ -42,7 +60,8 @@ def parse_select(text: str) -> Slice:
     except ValueError:
         pass
     raise InputError(
-        f"--select {text!r}: expected A:B:C (from A, below B, every C-th) or N, none negative"
+        f"--select {shown(text)}: expected A:B:C (from A, below B, every C-th), N or N,N,N, "
+        "none negative"
     )
 
 
@@ -79,13 +98,13 @@ def choose_missions(suite: Suite, options: Options) -> tuple[list[Mission], int]
     return chosen, skipped + asked - present
 
 
-def _selected(missions: Iterable[Mission], select: Slice | None) -> Iterator[Mission]:
+def _selected(missions: Iterable[Mission], select: Slice | Listed | None) -> Iterator[Mission]:
     for mission in missions:
         if select is None:
             yield mission
         elif select.stop is not None and mission.number >= select.stop:
             return
-        elif mission.number >= select.start and not (mission.number - select.start) % select.step:
+        elif mission.number in select.until(mission.number + 1):
             yield mission
 
 

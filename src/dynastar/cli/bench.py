@@ -70,7 +70,9 @@ def _add_missions(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--repeat", type=count, default=1, metavar="N", help="each mission N times")
     parser.add_argument(
-        "--select", metavar="A:B:C", help="a slice over the suite's own numbers, or one of them"
+        "--select",
+        metavar="A:B:C",
+        help="a slice over the suite's own numbers, or some of them (3,7,20)",
     )
     parser.add_argument(
         "--seed",
