@@ -16,7 +16,13 @@ from dynastar.errors import InputError
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.path import Path as Line
 from dynastar.robot import box
-from dynastar.viewer.figure import draw_episode, draw_map, draw_plan
+from dynastar.terminal import printable
+from dynastar.viewer.animation import animate_episode
+from dynastar.viewer.commands import draw_commands
+from dynastar.viewer.figure import draw_episode, draw_map, draw_plan, draw_world
+from dynastar.viewer.panels import draw_driven
+from dynastar.viewer.sheet import save
+from episodes import episode
 
 Cut = Callable[[int], Episode]
 
@@ -145,3 +151,20 @@ def test_no_global_state_of_matplotlib(
     monkeypatch.delitem(sys.modules, "matplotlib.pyplot", raising=False)
     draw_episode(office, tmp_path / "office.png")
     assert "matplotlib.pyplot" not in sys.modules
+
+
+@pytest.mark.parametrize("name", [r"$\frac{1}{$", r"\$a$b$", "a\x1b[2J\x00\n\u202eb", "$$"])
+def test_names_are_drawn_as_they_are(name: str, tmp_path: Path):
+    one = episode(plans=1)
+    one = replace(
+        one, robot=name, outcome=name, reason=name, contact=name,
+        scenario={**one.scenario, "name": name},
+    )  # fmt: skip
+    figure = draw_episode(one, tmp_path / "a.svg")
+    title = max(figure.texts, key=lambda text: text.get_fontsize())
+    assert title.get_text().replace(r"\$", "$").startswith(printable(name))
+    assert "\x1b" not in (tmp_path / "a.svg").read_text(encoding="utf-8")
+    animate_episode(one, tmp_path / "a.gif")
+    draw_world(one.grid, tmp_path / "b.png", name)
+    save(draw_commands(one.trajectory.times, {name: one.commands}), tmp_path / "c.png")
+    save(draw_driven(one), tmp_path / "d.png")

@@ -1,6 +1,7 @@
 import pytest
 
 from dynastar.viewer.intervals import Measure, draw_intervals
+from dynastar.viewer.spread import Column, Spread, draw_columns, draw_spreads
 
 GROUPS = ["first", "second"]
 
@@ -31,3 +32,14 @@ def test_each_measure_has_a_column_and_each_group_a_row():
 
 def test_no_group_at_all_is_a_picture_too():
     assert draw_intervals([Measure("one", {"": {}})], []).axes
+
+
+def test_names_with_dollars_are_no_formulas():
+    name = r"$\frac{1}{$"
+    figures = (
+        draw_intervals([Measure("one", {name: {name: (1.0, 0.0, 2.0)}, "b": {}})], [name]),
+        draw_spreads([Spread("one", {name: [1.0, 2.0]})]),
+        draw_columns([Column("one", {name: 1.0})]),
+    )
+    for figure in figures:
+        figure.canvas.draw()

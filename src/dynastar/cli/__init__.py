@@ -10,13 +10,15 @@ input, with one line on stderr.
 import os
 import sys
 import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from importlib import import_module
-from typing import Any
+from typing import Any, TextIO, cast
 
 from dynastar import __version__
 from dynastar.cli.parsing import OneLineParser
 from dynastar.errors import DynastarError, DynastarWarning, InputError
+from dynastar.terminal import Printable
 
 COMMANDS = {
     "plan": "find a path on a map",
@@ -53,10 +55,18 @@ BROKEN_PIPE = 141
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Runs a command and returns its exit status; errors of dynastar's end here, in one line."""
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), _printable_streams():
         warnings.simplefilter("always", DynastarWarning)
         warnings.showwarning = _show(warnings.showwarning)
         return _run(list(sys.argv[1:] if argv is None else argv))
+
+
+@contextmanager
+def _printable_streams() -> Iterator[None]:
+    """Names from files reach the terminal without the control characters that they may hold."""
+    out, errors = Printable(sys.stdout), Printable(sys.stderr)
+    with redirect_stdout(cast(TextIO, out)), redirect_stderr(cast(TextIO, errors)):
+        yield
 
 
 def _run(words: list[str]) -> int:

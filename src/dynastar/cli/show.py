@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from dynastar import io
+from dynastar.terminal import printable
 
 # Of the numbers that commands print, by name.
 UNITS = {
@@ -46,7 +47,7 @@ def as_table(data: Mapping[str, Any]) -> str:
 def _shown(value: Any) -> str:
     if value is None:
         return "-"
-    return f"{value:.3f}" if isinstance(value, float) else str(value)
+    return f"{value:.3f}" if isinstance(value, float) else printable(str(value))
 
 
 def _unit(name: str, value: Any) -> str:

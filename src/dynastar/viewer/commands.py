@@ -8,7 +8,7 @@ import numpy.typing as npt
 from matplotlib.figure import Figure
 
 from dynastar.viewer import palette
-from dynastar.viewer.sheet import PAGE, legend_style, plain, room, sheet
+from dynastar.viewer.sheet import PAGE, legend_style, literal, plain, room, sheet
 
 LEFT, LOW, HEIGHT, GAP, TOP = 0.65, 0.7, 1.6, 0.15, 0.1  # inches
 STYLES: tuple[dict[str, Any], ...] = (
@@ -28,7 +28,7 @@ def draw_commands(
         low = LOW + (1 - row) * (HEIGHT + GAP)
         axes = room(figure, LEFT, low, PAGE - LEFT - 0.15, HEIGHT)
         for style, (name, commands) in zip(STYLES, series.items(), strict=False):
-            axes.plot(times, commands[:, row], label=name, **style)
+            axes.plot(times, commands[:, row], label=literal(name), **style)
         axes.set_ylabel(label)
         axes.grid(color=palette.UNKNOWN, linewidth=0.4)
         axes.set_axisbelow(True)

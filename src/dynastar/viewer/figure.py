@@ -18,7 +18,7 @@ from dynastar.episode import Episode
 from dynastar.grid import OccupancyGrid
 from dynastar.metrics import Metrics, measure
 from dynastar.viewer import layers, palette, scene
-from dynastar.viewer.sheet import save
+from dynastar.viewer.sheet import literal, save
 from dynastar.viewer.view import View, known_view, mission_view
 
 if TYPE_CHECKING:
@@ -184,7 +184,7 @@ def _lay_out(
     if tall > TALLEST * width:
         across, tall = across * TALLEST * width / tall, TALLEST * width
     wide = max(across + LEFT + RIGHT, min(NARROWEST, width))
-    title, detail = words
+    title, detail = map(literal, words)
     lines = textwrap.wrap(detail, max(30, int(LETTERS * (wide - LEFT - 0.2))))
     rows = math.ceil(len(entries) / max(1, int((wide - 0.4) / LEGEND_COLUMN)))
     low = LEGEND_ROW * rows + 0.1 + AXIS

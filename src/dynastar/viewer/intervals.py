@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from dynastar.viewer import palette
-from dynastar.viewer.sheet import PAGE, SMALL, legend_style, plain, room, sheet
+from dynastar.viewer.sheet import PAGE, SMALL, legend_style, literal, plain, room, sheet
 
 LINE, LETTER, GAP, LOW, TOP = 0.24, 0.055, 0.25, 0.5, 0.1  # inches
 LEGEND_COLUMNS, LEGEND_LINE = 2, 0.15  # inches
@@ -44,14 +44,24 @@ def draw_intervals(measures: Sequence[Measure], groups: Sequence[str]) -> Figure
                     _show(axes, row + offset, values[group], COLOURS[number])
         axes.set(ylim=(max(len(groups), 1) - 0.5, -0.5), xlabel=measure.label)
         axes.set_xlim(*measure.limits)
-        axes.set_yticks(range(len(groups)), groups if place == 0 else [""] * len(groups))
+        axes.set_yticks(
+            range(len(groups)), [*map(literal, groups)] if place == 0 else [""] * len(groups)
+        )
         axes.xaxis.set_major_locator(MaxNLocator(4))
         axes.grid(axis="x", color=palette.UNKNOWN, linewidth=0.5)
         axes.set_axisbelow(True)
         plain(axes, SMALL)
         if len(measure.series) > 1:
             entries = [
-                Line2D([], [], color=colour, marker="o", markersize=3, linewidth=0.8, label=name)
+                Line2D(
+                    [],
+                    [],
+                    color=colour,
+                    marker="o",
+                    markersize=3,
+                    linewidth=0.8,
+                    label=literal(name),
+                )
                 for name, colour in zip(measure.series, COLOURS, strict=False)
             ]
             middle = left + place * (width + GAP) + 0.5 * width

@@ -17,6 +17,7 @@ from matplotlib.transforms import Affine2D
 from dynastar.episode import Episode, PlanRecord
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.viewer import palette, scene
+from dynastar.viewer.sheet import literal
 from dynastar.viewer.view import LARGEST_IMAGE, View, averaged_down, map_image, view_of
 
 if TYPE_CHECKING:
@@ -238,7 +239,7 @@ def show_contact(axes: Axes, episode: Episode) -> list[Artist]:
     x, y = episode.trajectory.poses[-1, :2]
     axes.plot(x, y, "x", color="white", markersize=12, markeredgewidth=4.5, zorder=10)
     axes.plot(x, y, "x", color=palette.CONTACT, markersize=10, markeredgewidth=2.6, zorder=10)
-    cross.set(markersize=7, markeredgewidth=2.2, label=f"contact ({episode.contact})")
+    cross.set(markersize=7, markeredgewidth=2.2, label=literal(f"contact ({episode.contact})"))
     return [cross]
 
 

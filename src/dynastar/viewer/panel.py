@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from dynastar.grid import OccupancyGrid
 from dynastar.viewer import layers, palette
 from dynastar.viewer.cells import show_cells
-from dynastar.viewer.sheet import SMALL, TEXT, legend_style, plain, room, sheet
+from dynastar.viewer.sheet import SMALL, TEXT, legend_style, literal, plain, room, sheet
 from dynastar.viewer.view import View
 
 Floats = npt.NDArray[np.float64]
@@ -66,10 +66,10 @@ def say(figure: Figure, axes: Axes, words: str, title: str = "") -> None:
     """A line of words over a map, and a title over that."""
     box = axes.get_position()
     high = box.y1 + 0.06 / figure.get_figheight()
-    figure.text(box.x0, high, words, fontsize=SMALL, color=palette.INK, va="bottom")
+    figure.text(box.x0, high, literal(words), fontsize=SMALL, color=palette.INK, va="bottom")
     high += 0.14 / figure.get_figheight()
     style: dict[str, Any] = {"fontsize": TEXT, "fontweight": "bold", "va": "bottom"}
-    figure.text(box.x0, high, title, color=palette.INK, **style)
+    figure.text(box.x0, high, literal(title), color=palette.INK, **style)
 
 
 def legend(figure: Figure, entries: Sequence[Artist], columns: int) -> None:

@@ -10,6 +10,7 @@ from dynastar.episode import Episode, PlanRecord
 from dynastar.grid import GridFrame
 from dynastar.metrics import Metrics
 from dynastar.path import Path
+from dynastar.terminal import printable
 
 Floats = npt.NDArray[np.float64]
 
@@ -151,7 +152,7 @@ def closest_tick(track: Floats, positions: Floats) -> int | None:
 
 def name_of(episode: Episode) -> str:
     """The mission's name, else the robot's."""
-    return str(episode.scenario.get("name") or episode.robot)
+    return printable(str(episode.scenario.get("name") or episode.robot))
 
 
 def outcome_words(metrics: Metrics) -> str:

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from dynastar.errors import InputError
 from dynastar.io.files import written_aside
 from dynastar.io.paths import local_path
+from dynastar.terminal import printable
 from dynastar.viewer import palette
 
 FORMATS = (".png", ".svg", ".pdf")
@@ -26,6 +27,11 @@ def sheet(width: float, height: float) -> Figure:
     figure = Figure(figsize=(width, height), facecolor="white")
     FigureCanvasAgg(figure)
     return figure
+
+
+def literal(text: str) -> str:
+    """A text from a file for Matplotlib to draw as it is: no formulas, no control characters."""
+    return printable(text).replace("$", r"\$")
 
 
 def room(figure: Figure, left: float, low: float, width: float, height: float) -> Axes:

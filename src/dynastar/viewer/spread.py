@@ -12,7 +12,7 @@ from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 
 from dynastar.viewer import palette
-from dynastar.viewer.sheet import COLUMN, PAGE, SMALL, legend_style, plain, room, sheet
+from dynastar.viewer.sheet import COLUMN, PAGE, SMALL, legend_style, literal, plain, room, sheet
 
 LINE, LETTER, GAP = 0.24, 0.052, 0.2  # inches: a row, a letter's width, between two columns
 LOW = 0.33  # inches under the rows, the legend not counted, for labels of one line
@@ -150,7 +150,7 @@ def _columns(
         axes = room(figure, left + number * (across + beside + GAP), low, across, tall)
         axes.set_ylim(len(names) - 0.5, -0.5)
         plain(axes)
-        axes.set_yticks(range(len(names)), names if number == 0 else [])
+        axes.set_yticks(range(len(names)), [*map(literal, names)] if number == 0 else [])
         axes.tick_params(axis="y", length=0, pad=4)
         for row in range(0, len(names), 2):
             axes.axhspan(row - 0.5, row + 0.5, color="#f4f5f6", linewidth=0, zorder=0)
