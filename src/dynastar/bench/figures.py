@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 from shapely.geometry import LineString, Point, Polygon
-from tqdm import tqdm
 
 from dynastar.bench import paper
 from dynastar.bench.own_maps import drawn, own_forty
@@ -18,6 +17,7 @@ from dynastar.grid import OccupancyGrid
 from dynastar.planning import SearchGrid, plan, smooth, straighten
 from dynastar.robot import ROBOTS
 from dynastar.simulation import run
+from dynastar.terminal import progress_bar
 from dynastar.viewer import schematics
 from dynastar.viewer.panels import Searched, draw_driven, draw_searches, draw_unaware
 from dynastar.viewer.sheet import save
@@ -44,7 +44,7 @@ def draw_all(folder: Path, progress: bool = False) -> list[Path]:
     Fig. 7 drives one mission. With ``progress`` a bar on stderr.
     """
     written = []
-    for name, draw in tqdm(FIGURES.items(), "figures", disable=not progress):
+    for name, draw in progress_bar(FIGURES.items(), "figures", disable=not progress):
         figure = draw()
         written += [save(figure, folder / f"{name}{suffix}") for suffix in SUFFIXES]
     return written

@@ -5,11 +5,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from tqdm import tqdm
-
 from dynastar.bench.workers import Workers, completed
 from dynastar.errors import InputError
 from dynastar.io.files import MAX_TEXT_BYTES, jsonable, read_bytes, written_aside
+from dynastar.terminal import progress_bar
 
 
 def collect(
@@ -35,7 +34,9 @@ def collect(
         text = "".join(json.dumps(jsonable(line)) + "\n" for line in lines)
         aside.write_text(text, encoding="utf-8")
     begun = len(jobs) - len(left)
-    shown = tqdm(total=len(jobs), initial=begun, desc=name, disable=not progress, delay=1e-6)
+    shown = progress_bar(
+        total=len(jobs), initial=begun, desc=name, disable=not progress, delay=1e-6
+    )
     with file.open("a", encoding="utf-8") as kept, shown as bar:
         arrived = sum(done[key].get("outcome") == "arrived" for key in keys if key in done)
         for index, row in completed(work, [job for _, job in left], workers):

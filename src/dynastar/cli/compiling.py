@@ -4,9 +4,8 @@ import subprocess
 import sys
 import time
 
-from tqdm import tqdm
-
 from dynastar import compiled
+from dynastar.terminal import progress_bar
 
 PARTS = "plan", "drive"
 FILES = 400  # that the cache holds, about, when all is compiled
@@ -50,10 +49,9 @@ def _start(part: str) -> "subprocess.Popen[bytes]":
 def _wait(children: "list[subprocess.Popen[bytes]]") -> None:
     """Waits for processes, with a bar of the files in the cache on a terminal."""
     folder = compiled.folder()
-    with tqdm(
+    with progress_bar(
         total=FILES,
         desc=WORDS,
-        file=sys.stderr,
         leave=False,
         disable=not sys.stderr.isatty(),
         bar_format="{desc} |{bar}| {elapsed}",

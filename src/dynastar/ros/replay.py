@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from tqdm import tqdm
 
 from dynastar.errors import DataError, DynastarError
 from dynastar.geometry import Goal, Twist
@@ -23,6 +22,7 @@ from dynastar.ros.bridge import REQUESTS, TAKES, Bridge, started
 from dynastar.ros.incoming import seconds, twist_of
 from dynastar.ros.localization import PoseSource
 from dynastar.ros.settings import NodeSettings
+from dynastar.terminal import progress_bar
 
 COMMANDS = "cmd_vel"
 NOTHING = Twist(math.nan, math.nan)
@@ -214,7 +214,7 @@ def _ticks(
     bridge = None if ours else overrides.bridge(None)
     shorts = {name: short for short, name in topics.items()}
     refused, led = "", None
-    for name, at, message in tqdm(
+    for name, at, message in progress_bar(
         bag.messages(set(shorts)), desc="replay", unit=" messages", disable=not progress, delay=0.5
     ):
         short = shorts[name]

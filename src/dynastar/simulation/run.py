@@ -1,13 +1,10 @@
 """Running a mission: the world, the navigator in it, and how it ends (section V)."""
 
 import math
-import sys
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from time import perf_counter
 from typing import Any, Protocol
-
-from tqdm import tqdm
 
 from dynastar.episode import Episode
 from dynastar.errors import InputError, ScenarioError
@@ -22,6 +19,7 @@ from dynastar.simulation.start import start_pose
 from dynastar.simulation.tracing import Tracer
 from dynastar.simulation.warming import warm_up
 from dynastar.simulation.world import World
+from dynastar.terminal import progress_bar
 
 SENSOR_LOST = 5.0  # s without usable data until a mission is given up
 GRACE = 5.0  # s to come to rest after the last word, on top of the stopping time
@@ -122,11 +120,10 @@ def drive(
 
 def _bar(scenario: Scenario, progress: bool) -> Any:
     """A bar on stderr, in simulated seconds; it shows nothing unless ``progress`` is set."""
-    return tqdm(
+    return progress_bar(
         total=scenario.time_limit,
         desc=scenario.name,
         unit="s",
-        file=sys.stderr,
         disable=not progress,
         delay=1e-6,  # nothing is shown of a mission that cannot begin
         bar_format="{desc}: {n:.1f} of at most {total:.0f} simulated s [{elapsed}]",

@@ -9,13 +9,13 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 from PIL.ImageColor import getrgb
-from tqdm import tqdm
 
 from dynastar.episode import Episode
 from dynastar.errors import InputError
 from dynastar.io.files import written_aside
 from dynastar.io.paths import local_path
 from dynastar.metrics import measure
+from dynastar.terminal import progress_bar
 from dynastar.viewer import palette, scene
 from dynastar.viewer.canvas import FINE, Canvas, letters_font
 from dynastar.viewer.view import mission_view
@@ -76,7 +76,9 @@ def animate_episode(
     frames = _frames(episode, shown)
     first = next(frames)
     colours = _colours()
-    rest = tqdm(frames, "animation", len(shown.ticks) - 1, disable=not progress, unit="frame")
+    rest = progress_bar(
+        frames, "animation", total=len(shown.ticks) - 1, disable=not progress, unit="frame"
+    )
     durations = [shown.frame_ms] * (len(shown.ticks) - 1) + [round(1000 * HOLD)]
     with written_aside(path) as aside:
         first.quantize(palette=colours, dither=Image.Dither.NONE).save(
