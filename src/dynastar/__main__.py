@@ -1,8 +1,17 @@
-"""``python -m dynastar``."""
+"""``python -m dynastar``, and the command ``dynastar``."""
 
 import sys
 
-from dynastar.cli import main
+from dynastar.interrupt import end_imports_cleanly
+
+
+def start() -> int:
+    """Runs a command and returns its exit status."""
+    end_imports_cleanly()
+    from dynastar.cli import main
+
+    return main()
+
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(start())

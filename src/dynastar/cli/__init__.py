@@ -18,6 +18,7 @@ from typing import Any, TextIO, cast
 from dynastar import __version__
 from dynastar.cli.parsing import OneLineParser
 from dynastar.errors import DynastarError, DynastarWarning, InputError
+from dynastar.interrupt import INTERRUPTED
 from dynastar.terminal import Printable
 
 COMMANDS = {
@@ -49,7 +50,7 @@ examples:
   dynastar warmup"""
 
 ROS, TAKE_ROS = "--ros-args", ("ros", "ros-sim")
-INTERRUPTED = 130
+
 BROKEN_PIPE = 141
 
 
