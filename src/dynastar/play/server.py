@@ -152,11 +152,14 @@ class Playground:
             code, reason = next(iter(done)).result()
         except (WebSocketDisconnect, RuntimeError, OSError):  # the page is gone
             code, reason = 0, ""
+        except asyncio.CancelledError:  # the server ends, and this page has not closed in time
+            code, reason = 0, ""
         finally:
             self._pages.discard(woken)
             for task in tasks:
                 task.cancel()
-            await asyncio.gather(*tasks, return_exceptions=True)
+            with contextlib.suppress(asyncio.CancelledError):
+                await asyncio.gather(*tasks, return_exceptions=True)
         if code:
             with contextlib.suppress(RuntimeError, OSError):
                 await socket.close(code, reason)
