@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from tqdm import tqdm
 
 EVERY = 5.0  # s between the lines of progress in a pipe
+LINE = "{desc}: {n_fmt} of {total_fmt} [{elapsed}<{remaining}{postfix}]"
 _CONTROL = ("Cc", "Cs", "Zl", "Zp")  # categories of characters
 _BIDIRECTIONAL = {*map(chr, (*range(0x202A, 0x202F), *range(0x2066, 0x206A)))}
 
@@ -65,6 +66,7 @@ def progress_bar(items: Iterable[Any] | None = None, desc: str = "", **options: 
     stream: Any = sys.stderr
     stream = getattr(stream, "stream", stream) if isinstance(stream, Printable) else stream
     if not stream.isatty():
-        options |= {"ncols": 0, "mininterval": EVERY}
+        line = str(options.get("bar_format", LINE)).replace("|{bar}| ", "")
+        options |= {"bar_format": line, "mininterval": EVERY}
         stream = _Lines(stream)
     return tqdm(items, desc=printable(desc), file=stream, **options)

@@ -4,6 +4,7 @@ import math
 import sys
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numba.core.registry import CPUDispatcher
@@ -128,6 +129,7 @@ lidars = st.builds(
 )
 
 
+@pytest.mark.filterwarnings("ignore:a footprint reaches")
 @settings(max_examples=40, deadline=None)
 @given(footprint=footprints, lidar=lidars, error=st.sampled_from([0.0, 0.05, 1.0]))
 def test_any_robot_is_driven_or_says_why_not_and_compiles_nothing(footprint, lidar, error):

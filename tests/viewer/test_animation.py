@@ -92,8 +92,12 @@ def test_bad_input_is_said(office: Episode, cut: Cut, tmp_path: Path):
 
 
 def test_progress_goes_to_stderr(
-    office: Episode, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    office: Episode,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ):
+    monkeypatch.setattr("dynastar.terminal.EVERY", 0.0)  # s between lines where it is no terminal
     animate_episode(office, tmp_path / "a.gif", max_seconds=0.5)
     assert capsys.readouterr() == ("", "")
     animate_episode(office, tmp_path / "a.gif", max_seconds=0.5, progress=True)
