@@ -138,7 +138,10 @@ def _read(data: bytes) -> tuple[Arrays, str]:
 
 
 def _without_rest(arrays: Arrays) -> tuple[Arrays, str]:
-    """What is left of a file that was cut off, made complete; and what is not in it, in words."""
+    """The arrays of a file that was cut off with empty ones for the missing, and what is missing.
+
+    Raises EpisodeError if a part of the drive is missing.
+    """
     header = _header(arrays["header"])
     ends = [name for name in _DRIVE if name not in arrays]
     if ends:

@@ -202,8 +202,8 @@ class Navigator:
         self._choice = None
         state, mission = within_limits(as_floats(state), self.robot.limits), self.mission
         state = state._replace(pose=turned_pose(state.pose, -self._yaw))
-        self.sensing.trusts_map = self.config.unseen_speed > 0.0 and self.progress.rounds > 1
-        fault = self.sensing.update(state, as_scans(scan))
+        last_resort = self.config.unseen_speed > 0.0 and self.progress.rounds > 1
+        fault = self.sensing.update(state, as_scans(scan), last_resort)
         try:
             movers = as_moving(movers)
         except ValueError as error:

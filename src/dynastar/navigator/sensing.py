@@ -53,7 +53,7 @@ class Sensing:
         self.tracker = Tracker(config.tracker)
         self.poses, self._feed = PoseHistory(robot.limits, config), ScanFeed(robot, config)
         self._at_start = True  # until the first scan
-        self.trusts_map = False  # whether unseen space that is free on the map is open
+        self.trusts_map = False  # as of the last update
 
     def set_map(self, planning_map: PlanningMap) -> None:
         """Another map; the local map is moved onto its cells."""
@@ -77,8 +77,14 @@ class Sensing:
         """Whether some lidar repeats readings that the robot's motion contradicts."""
         return self._feed.is_frozen
 
-    def update(self, state: RobotState, scans: Sequence[LaserScan]) -> str | None:
-        """Update local map and tracks. Returns why the data cannot be trusted, or None."""
+    def update(
+        self, state: RobotState, scans: Sequence[LaserScan], trusts_map: bool = False
+    ) -> str | None:
+        """Update local map and tracks. Returns why the data cannot be trusted, or None.
+
+        ``trusts_map`` tells to take unseen space that is free on the map as open.
+        """
+        self.trusts_map = trusts_map
         fault = self.poses.fault(state)
         if fault is not None:
             return fault
