@@ -1,4 +1,4 @@
-"""What the suites on public data share: shapes, and who touched whom."""
+"""What suites share: shapes, which mover was touched, worlds of other simulators."""
 
 import math
 
@@ -7,10 +7,11 @@ import numpy.typing as npt
 import shapely
 
 from dynastar.episode import Episode
-from dynastar.geometry import Pose2D
+from dynastar.geometry import Pose2D, Twist
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.robot import Footprint
-from dynastar.simulation.contact import placed_footprint
+from dynastar.simulation import World
+from dynastar.simulation.contact import RESTING, placed_footprint
 
 Floats = npt.NDArray[np.float64]
 
@@ -46,3 +47,17 @@ def touched_mover(episode: Episode) -> int | None:
     gaps = gaps - episode.mover_radii - (0.0 if footprint else episode.radius)
     nearest = int(np.argmin(gaps))
     return nearest if gaps[nearest] <= TOUCHING else None
+
+
+class DirectWorld(World):
+    """A world of another simulator, whose robots move as commanded: nothing slips or comes late."""
+
+    @property
+    def wheels(self) -> Twist:
+        """The same as ``twist``."""
+        return self.twist
+
+    @property
+    def resting(self) -> bool:
+        """Whether the robot stands."""
+        return all(abs(speed) < RESTING for speed in self.twist)

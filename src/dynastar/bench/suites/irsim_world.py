@@ -8,15 +8,15 @@ import numpy.typing as npt
 import shapely
 
 from dynastar.adapters.irsim import scan_of, state_of
+from dynastar.bench.suites.common import DirectWorld
 from dynastar.geometry import Pose2D, Twist
 from dynastar.navigator import RobotState
 from dynastar.scan import LaserScan
-from dynastar.simulation import Scenario, World
-from dynastar.simulation.contact import RESTING
+from dynastar.simulation import Scenario
 from dynastar.simulation.movers import Movers
 
 
-class IrSimWorld(World):
+class IrSimWorld(DirectWorld):
     """The world of an ir-sim environment with one robot; ``movers`` are its walkers."""
 
     def __init__(self, scenario: Scenario, start: Pose2D, seed: int, env: Any) -> None:
@@ -34,16 +34,6 @@ class IrSimWorld(World):
     def twist(self) -> Twist:
         """The robot's speeds."""
         return self.sensed_state().twist
-
-    @property
-    def wheels(self) -> Twist:
-        """The same: nothing slips."""
-        return self.twist
-
-    @property
-    def resting(self) -> bool:
-        """Whether the robot stands; commands act at once."""
-        return all(abs(speed) < RESTING for speed in self.twist)
 
     @property
     def movers(self) -> npt.NDArray[np.float64]:

@@ -8,10 +8,11 @@ import numpy.typing as npt
 from navground.core import Behavior, Frame, Kinematics, SensingState, Twist2
 
 from dynastar.adapters.navground import scan_of
+from dynastar.bench.suites.common import DirectWorld
 from dynastar.geometry import Pose2D, Twist
 from dynastar.navigator import RobotState
 from dynastar.scan import LaserScan
-from dynastar.simulation import Scenario, World
+from dynastar.simulation import Scenario
 from dynastar.simulation.contact import RESTING
 from dynastar.simulation.movers import Movers
 
@@ -104,7 +105,7 @@ def drive_agent(watched: Watched, scenario: Scenario) -> dict[str, Any]:
     return {"outcome": outcome, "time": watched.time, **contacts, **watched.facts()}
 
 
-class NavgroundWorld(World):
+class NavgroundWorld(DirectWorld):
     """The world of a navground agent with the behavior ``Told``; ``movers`` are the other agents."""
 
     def __init__(self, scenario: Scenario, start: Pose2D, seed: int, watched: Watched) -> None:
@@ -122,16 +123,6 @@ class NavgroundWorld(World):
     def twist(self) -> Twist:
         """The robot's speeds."""
         return self._watched.twist
-
-    @property
-    def wheels(self) -> Twist:
-        """The same: nothing slips."""
-        return self.twist
-
-    @property
-    def resting(self) -> bool:
-        """Whether the robot stands; commands act at once."""
-        return all(abs(speed) < RESTING for speed in self.twist)
 
     @property
     def movers(self) -> Floats:
