@@ -8,7 +8,12 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 # No test may depend on how fast the machine is.
-settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.register_profile(
+    "patient",
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow],
+    derandomize="CI" in os.environ,  # the same examples on every machine that judges a change
+)
 settings.load_profile("patient")
 
 ROOT = Path(__file__).parents[1]

@@ -82,7 +82,7 @@ def way_out(blocked, inflated, start, goal, radius):
     beside = nearest <= 1.5 * (radius - gap) + 2.0
     for length, cell in exits:
         rest = shortest(inflated, cell)
-        if goal in rest and (not beside or length <= nearest + 1.0):
+        if goal in rest and (not beside or length <= nearest + 1.0 + 1e-6):
             return math.dist(start, first) + length, rest[goal]
     return NoPath
 

@@ -3,6 +3,7 @@
 import importlib.util
 import re
 import runpy
+from contextlib import nullcontext
 from itertools import pairwise
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 from dynastar import load_map, load_scenario, run
+from dynastar.errors import DynastarWarning
 from dynastar.metrics import measure
 from dynastar.planning import segment_clear
 from dynastar.simulation import Scenario
@@ -88,7 +90,9 @@ def test_the_robot_crosses_real_maps(
     name: str, data_dir: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("DYNASTAR_DATA", str(data_dir))
-    scenario = load_scenario(EXAMPLES / f"{name}.toml")
+    told = pytest.warns(DynastarWarning, match="free_thresh 0.25 makes .* 4.8 %")
+    with told if name == "depot" else nullcontext():
+        scenario = load_scenario(EXAMPLES / f"{name}.toml")
     assert scenario.obstacles
     assert scenario.movers
     check_lanes(scenario)

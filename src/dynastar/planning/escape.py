@@ -76,7 +76,7 @@ def way_out(
     if zone is None and nearest == np.inf:
         raise StartOccupied(f"no cell outside the inflation is reached from cell {start}")
     if zone is None and nearest <= BESIDE * (grid.radius - clearance) + 2.0:
-        lengths[lengths > nearest + 1.0] = np.inf
+        lengths[lengths > nearest + 1.0 + 1e-9] = np.inf  # a tie of rounded lengths is kept
     lengths[~leads_on] = np.inf
     if np.isinf(lengths).all():
         raise NoPath(f"no way out of the inflation leads on from cell {start}")
