@@ -73,6 +73,13 @@ def test_the_window_is_what_a_period_reaches_within_the_limits():
     assert window(0.0)[0].min() == 0.0
 
 
+@given(SPEEDS, RATES, st.floats(0.01, 1.0))
+def test_every_end_of_equation_6_is_the_speed_and_what_its_own_limit_adds(v, omega, dt):
+    limits = LIMITS._replace(v_accel=0.2, v_brake=0.3, omega_accel=0.5, omega_brake=0.7)
+    ends = v - 0.3 * dt, v + 0.2 * dt, omega - 0.7 * dt, omega + 0.5 * dt
+    assert p.reachable(v, omega, limits, dt) == pytest.approx(ends, abs=1e-12)
+
+
 @pytest.mark.parametrize("name", sorted(ROBOTS))
 def test_the_number_of_samples_is_bounded_for_every_robot(name):
     v, omega = window(robot=ROBOTS[name])

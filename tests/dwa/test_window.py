@@ -22,6 +22,18 @@ def test_equation_5_speeds_are_possible_within_the_limits_and_the_cap_both_ways(
     assert (window.low_omega, window.high_omega) == (-limits.omega_max, limits.omega_max)
 
 
+@pytest.mark.parametrize("turn", [-1.0, 1.0])
+@pytest.mark.parametrize("forward", [-1.0, 1.0])
+def test_every_end_of_equation_6_is_the_speed_and_what_its_own_limit_adds(forward, turn):
+    limits = Limits(9.0, 9.0, 0.2, 0.5, 0.3, 0.7, v_min=-9.0)
+    state = state_at(0.0, 0.0, 0.0, 2.0 * forward, 3.0 * turn)
+    got = reachable(state, limits, possible(limits, 9.0), 2.0)
+    v = sorted([2.0 - 0.3 * 2.0, 2.0 + 0.2 * 2.0])  # slower and faster
+    omega = sorted([3.0 - 0.7 * 2.0, 3.0 + 0.5 * 2.0])
+    ends = sorted(forward * end for end in v), sorted(turn * end for end in omega)
+    assert got == pytest.approx((*ends[0], *ends[1]), abs=1e-12)
+
+
 @given(robots, *[st.floats(0, 1)] * 5, st.floats(0.05, 2.0))
 @settings(deadline=None)
 def test_equation_6_speeds_are_reachable_if_a_ramp_gets_there_in_time(
