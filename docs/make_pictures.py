@@ -1,8 +1,9 @@
-"""Remakes the pictures of the README and of docs/playground.md; needs chromium and playwright.
+"""Remakes the pictures of the README and the guides; needs chromium and playwright.
 
     make pictures
 
-The replay and the animation are of ``dynastar demo``; the playground's picture is of the scene crowd.
+The replay and the animation are of ``dynastar demo``; the playground's picture and the close-up among
+walkers are of the scene crowd; the planners are compared on the map of the office.
 """
 
 import shutil
@@ -12,6 +13,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+import close_up
+import planners_compared
 from playwright.sync_api import Page, sync_playwright
 
 MEDIA = Path(__file__).parent / "media"
@@ -21,6 +24,8 @@ PLAY_AT = 9.0  # s
 
 def main() -> None:
     """Runs the demo, and takes both pages' pictures."""
+    close_up.draw(MEDIA / "among-people.webp")
+    planners_compared.draw(MEDIA / "planners.png")
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         demo = Path(folder, "demo")
