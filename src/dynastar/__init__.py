@@ -2,7 +2,7 @@
 
 from dynastar import notebook
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _WHERE = {
     "Limits": "robot",
