@@ -1,7 +1,9 @@
 """What is installed: examples come with it, and what only some uses need is asked for in a sentence."""
 
+import re
 import subprocess
 import sys
+import tomllib
 import zipfile
 from pathlib import Path
 
@@ -9,6 +11,7 @@ import pytest
 
 from dynastar.cli import main
 from dynastar.errors import MissingPackage
+from dynastar.extras import PUBLISHED, install_command
 from dynastar.io.examples import examples_folder
 from dynastar.page.report import SCRIPTS
 
@@ -78,7 +81,7 @@ def test_a_robot_needs_no_matplotlib_and_no_scipy(tmp_path):
     (tmp_path / "room.toml").write_text(SCENARIO)
     ran = without("matplotlib,scipy", "run", "room.toml", "--out", "out", cwd=tmp_path)
     assert ran.returncode == 0, ran.stderr
-    assert "pip install 'dynastar[viewer]'" in ran.stderr
+    assert "pip install '.[viewer]'" in ran.stderr
     assert (tmp_path / "out" / "episode.npz").is_file()
     assert (tmp_path / "out" / "summary.json").is_file()
 
@@ -88,10 +91,28 @@ def test_what_needs_an_extra_says_which(words, tmp_path):
     ran = without("matplotlib,scipy", *words, cwd=tmp_path)
     assert ran.returncode == 1
     (line,) = ran.stderr.splitlines()
-    assert "pip install 'dynastar[" in line
+    assert "pip install '.[" in line
 
 
 def test_pictures_from_python_say_it_too():
     code = "import sys; sys.modules['matplotlib'] = None; import dynastar.viewer"
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert MissingPackage.__name__ in ran.stderr.splitlines()[-1]
+
+
+def test_pages_and_messages_install_extras_by_the_command_that_works_today():
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"][
+        "optional-dependencies"
+    ]
+    pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
+    sources = [file for file in (ROOT / "src").rglob("*.py") if file.name != "extras.py"]
+    found = 0
+    for file in [*pages, *sources]:
+        for command, named in re.findall(
+            r"(pip install (?:-e )?'[\w.]*\[([\w,]+)\]')", file.read_text("utf-8")
+        ):
+            assert command.replace("-e ", "") == install_command(named), file
+            assert set(named.split(",")) <= set(extras), file
+            found += 1
+        assert PUBLISHED or "pip install dynastar" not in file.read_text("utf-8"), file
+    assert found >= 8

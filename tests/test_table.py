@@ -56,7 +56,5 @@ def test_a_data_frame_has_the_columns(monkeypatch):
 
 def test_without_pandas_one_error_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(
-        MissingPackage, match=r"data frames need pandas: pip install 'dynastar\[pandas"
-    ):
+    with pytest.raises(MissingPackage, match=r"data frames need pandas: pip install '\.\[pandas"):
         EPISODE.to_dataframe()

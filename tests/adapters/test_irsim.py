@@ -8,7 +8,7 @@ import yaml
 
 from dynastar.errors import InputError
 
-pytest.importorskip("irsim", reason="needs ir-sim: pip install 'dynastar[irsim]'")
+pytest.importorskip("irsim", reason="needs ir-sim: pip install '.[irsim]'")
 
 import irsim
 

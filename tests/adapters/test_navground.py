@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-pytest.importorskip("navground", reason="needs navground: pip install 'dynastar[navground]'")
+pytest.importorskip("navground", reason="needs navground: pip install '.[navground]'")
 
 from navground.core import Disc, LineSegment, Pose2
 from navground.core.kinematics import (

@@ -14,7 +14,7 @@ from dynastar.bench.workers import completed
 from dynastar.cli import main
 from dynastar.errors import InputError
 
-pytest.importorskip("distributed", reason="needs the extra: pip install 'dynastar[dask]'")
+pytest.importorskip("distributed", reason="needs the extra: pip install '.[dask]'")
 
 pytestmark = pytest.mark.filterwarnings("ignore")  # of distributed, as it closes
 

@@ -10,6 +10,7 @@ from functools import partial
 from typing import Any
 
 from dynastar.errors import DynastarError, InputError
+from dynastar.extras import how_to_install
 
 Row = dict[str, Any]
 
@@ -55,7 +56,7 @@ def _client(address: str) -> Any:
     try:
         from distributed import Client
     except ImportError:
-        raise InputError("--dask needs Dask: pip install 'dynastar[dask]'") from None
+        raise InputError(f"--dask needs Dask: {how_to_install('dask')}") from None
     try:
         return Client(address, timeout=TIMEOUT, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:

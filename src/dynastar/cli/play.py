@@ -6,22 +6,23 @@ import sys
 from dynastar import io
 from dynastar.cli.parsing import path, port
 from dynastar.config import choose
-from dynastar.extras import require
+from dynastar.extras import how_to_install, require
 
 DESCRIPTION = (
     "Serves a page that drives a scene live: set goals by clicks, paint obstacles, "
     "put walkers in its way, change weights, and see what it considers."
 )
 
-EXAMPLES = """\
+EXAMPLES = f"""\
 examples:
   dynastar play
   dynastar play crowd --open
   dynastar play my_scene.toml --port 9000
   dynastar play --host 0.0.0.0        # for others, too: the address that is printed has a token
 
-Needs pip install 'dynastar[play]'. The page saves the scene as a scenario file and the drive as an
-episode, for dynastar run and dynastar view."""
+Needs {how_to_install("play")}.
+The page saves the scene as a scenario file and the drive as an episode, for dynastar run and dynastar
+view."""
 
 SCENES = ("office", "twenty", "field", "crowd", "u_trap")
 

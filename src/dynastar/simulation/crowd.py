@@ -17,6 +17,7 @@ import numpy.typing as npt
 import shapely
 
 from dynastar.errors import ScenarioError
+from dynastar.extras import how_to_install
 from dynastar.geometry import Pose2D
 from dynastar.grid import OccupancyGrid
 from dynastar.robot import Footprint
@@ -24,8 +25,6 @@ from dynastar.simulation.contact import occupied_runs
 from dynastar.simulation.scenario import Pedestrian
 
 Floats = npt.NDArray[np.float64]
-
-INSTALL = "pip install 'dynastar[pedestrians]'"
 
 STEP = 0.05  # s, one step of the pedestrian model
 WALL_GAP = 0.01  # m kept between a pedestrian's disc and a wall
@@ -70,7 +69,9 @@ class Crowd:
         seed: int = 0,
     ) -> None:
         if not jupedsim_installed():
-            raise ScenarioError(f"pedestrians who react need JuPedSim: {INSTALL}")
+            raise ScenarioError(
+                f"pedestrians who react need JuPedSim: {how_to_install('pedestrians')}"
+            )
         self.radii = np.array([pedestrian.radius for pedestrian in pedestrians])
         self._area = _part_with(pedestrians, walkable_area(grid, obstacles))
         self._clear = [self._area.buffer(-(radius + WALL_GAP)) for radius in self.radii]

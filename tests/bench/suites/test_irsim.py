@@ -21,7 +21,7 @@ def test_without_ir_sim_one_clear_line(monkeypatch):
         load_suite("irsim")
 
 
-pytest.importorskip("irsim", reason="needs ir-sim: pip install 'dynastar[irsim]'")
+pytest.importorskip("irsim", reason="needs ir-sim: pip install '.[irsim]'")
 
 from dynastar.bench.suites import irsim as suite  # noqa: E402
 from dynastar.bench.suites.irsim_world import IrSimWorld  # noqa: E402

@@ -21,7 +21,7 @@ def test_without_navground_one_clear_line(monkeypatch):
         load_suite("navground")
 
 
-pytest.importorskip("navground", reason="needs navground: pip install 'dynastar[navground]'")
+pytest.importorskip("navground", reason="needs navground: pip install '.[navground]'")
 
 from navground.core import Disc, Pose2  # noqa: E402
 

@@ -236,7 +236,7 @@ def test_left_out_worlds_are_few_and_say_why():
 
 def test_without_jupedsim_reactive_numbers_are_left_out_with_a_word(monkeypatch):
     monkeypatch.setattr(suite, "jupedsim_installed", lambda: False)
-    assert "pip install 'dynastar[pedestrians]'" in suite.leave_out(mission(3), Options())
+    assert "pip install '.[pedestrians]'" in suite.leave_out(mission(3), Options())
     monkeypatch.setattr(suite, "judge", lambda *_: "")
     assert suite.leave_out(mission(4), Options()) == ""
 

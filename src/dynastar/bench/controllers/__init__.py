@@ -22,6 +22,7 @@ from typing import Any
 
 from dynastar.config import nearest
 from dynastar.errors import ConfigError
+from dynastar.extras import how_to_install
 
 BUILT_IN = {
     "navigator": "",
@@ -42,7 +43,7 @@ def controller_named(name: str) -> Callable[..., Any] | None:
         return None
     if name == "kompass_dwa" and find_spec("kompass_core") is None:
         raise ConfigError(
-            "the controller kompass_dwa needs kompass-core: pip install 'dynastar[kompass]'"
+            f"the controller kompass_dwa needs kompass-core: {how_to_install('kompass')}"
         )
     where = BUILT_IN.get(name, name)
     module_name, colon, class_name = where.partition(":")

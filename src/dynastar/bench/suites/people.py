@@ -36,10 +36,11 @@ from dynastar.bench.suites import people_crowd, people_scripts
 from dynastar.bench.suites.people_sites import SITES, Site, draw_site, heading_of
 from dynastar.bench.suites.people_witness import find_witness, lattice_heading
 from dynastar.errors import DataError
+from dynastar.extras import how_to_install
 from dynastar.geometry import Goal
 from dynastar.robot import ROBOTS, Robot
 from dynastar.simulation import Mover, Pedestrian, Scenario
-from dynastar.simulation.crowd import INSTALL, jupedsim_installed
+from dynastar.simulation.crowd import jupedsim_installed
 from dynastar.simulation.scenario import Attention
 
 DEFAULT_MISSIONS = 400
@@ -78,7 +79,7 @@ def mode(number: int) -> str:
 def leave_out(mission: Mission, options: Options) -> str:
     """Worlds without a witness; reactive ones without JuPedSim."""
     if mode(mission.number) == "reactive" and not jupedsim_installed():
-        return f"pedestrians who react need JuPedSim: {INSTALL}"
+        return f"pedestrians who react need JuPedSim: {how_to_install('pedestrians')}"
     return judge(options.seed, mission.number)
 
 
