@@ -111,7 +111,7 @@ def test_the_command_line_says_that_it_compiles_the_first_time_only(tmp_path, mo
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kernels"))
     monkeypatch.setattr(compiling, "PARTS", ())
     assert compiling.prepare() > 0.0
-    assert "dynastar compiles its kernels" in capsys.readouterr().err
+    assert "compiling kernels" in capsys.readouterr().err
     assert compiling.prepare() == 0.0
     assert capsys.readouterr().err == ""
 
@@ -169,11 +169,15 @@ def test_the_command_line_works_for_a_user_without_a_name_and_a_home(tmp_path):
     dropped = ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "HOME")
     env = {key: value for key, value in os.environ.items() if key not in dropped}
     env["TMPDIR"] = str(tmp_path)
-    for home, lines in ({"HOME": "/proc/none"}, 2), ({}, 0):  # compiled, and found again
+    for home, compiles in ({"HOME": "/proc/none"}, True), ({}, False):
         done = subprocess.run(command, env=env | home, capture_output=True, text=True)
         assert (done.returncode, done.stdout[:7]) == (0, "planner"), done.stderr
-        assert len(done.stderr.splitlines()) == lines, done.stderr
-        assert ("no home can be written" in done.stderr) == (lines > 0)
+        said = done.stderr.splitlines()
+        if compiles:
+            assert all(line.startswith("compil") for line in said), done.stderr
+            assert "no home can be written" in said[-1]
+        else:
+            assert said == []
 
 
 def test_a_record_has_the_fields_of_its_class():

@@ -10,7 +10,7 @@ from dynastar.terminal import progress_bar
 PARTS = "plan", "drive"
 FILES = 400  # that the cache holds, about, when all is compiled
 WAIT = 0.2  # s
-WORDS = "dynastar compiles its kernels, once for this version"
+WORDS = "compiling kernels, once for this version"
 
 
 def prepare() -> float:
@@ -23,7 +23,7 @@ def prepare() -> float:
         return 0.0
     began = time.perf_counter()
     if not sys.stderr.isatty():
-        print(f"{WORDS}: about 25 s", file=sys.stderr)
+        print(f"{WORDS}: about 25 s on two cores", file=sys.stderr)
     children = [_start(part) for part in PARTS]
     try:
         _wait(children)
@@ -47,14 +47,13 @@ def _start(part: str) -> "subprocess.Popen[bytes]":
 
 
 def _wait(children: "list[subprocess.Popen[bytes]]") -> None:
-    """Waits for processes, with a bar of the files in the cache on a terminal."""
+    """Waits for processes, with a bar of the files in the cache."""
     folder = compiled.folder()
     with progress_bar(
         total=FILES,
         desc=WORDS,
         leave=False,
-        disable=not sys.stderr.isatty(),
-        bar_format="{desc} |{bar}| {elapsed}",
+        bar_format="{desc}: {percentage:.0f} % |{bar}| {elapsed}",
     ) as bar:
         while any(child.poll() is None for child in children):
             time.sleep(WAIT)

@@ -27,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "name", nargs="?", default="office", metavar="NAME", help="of --list (default office)"
     )
-    parser.add_argument("--out", type=path, metavar="DIR", help="default out/<scenario's name>")
+    parser.add_argument("--out", type=path, metavar="DIR", help="default out/NAME")
     add_json(parser)
     add_no_gif(parser)
     parser.add_argument("--list", action="store_true", help="list the examples instead")
@@ -46,10 +46,24 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.copy is not None:
         return _copy(arguments.copy)
     choose(arguments.name, example_scenarios(), "example")
+    arguments.out = arguments.out or Path("out", arguments.name)
     arguments.scenario = example_scenarios()[arguments.name]
     arguments.seed = arguments.preset = arguments.bag = None
     arguments.set = []
-    return run.execute(arguments)
+    print(f"driving the example {arguments.name} in simulation", file=sys.stderr)
+    status = run.execute(arguments)
+    if sys.stdin.isatty() and sys.stderr.isatty():
+        _offer(run.replay_address(arguments.out))
+    return status
+
+
+def _offer(address: str) -> None:
+    """Asks whether to open the replay in the browser."""
+    import webbrowser
+
+    print("open the replay in the browser? [y/N] ", end="", file=sys.stderr, flush=True)
+    if sys.stdin.readline().strip().lower() in ("y", "yes") and not webbrowser.open(address):
+        print(f"no browser was found: open {address} in one", file=sys.stderr)
 
 
 def _copy(folder: Path) -> int:

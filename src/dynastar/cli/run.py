@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from dynastar.episode import Episode
     from dynastar.simulation import Scenario
 
+REPORT = "report.html"
+
 DESCRIPTION = (
     "Drives a scenario in simulation; draws it and measures it. "
     "Exit status 0 only for an arrival without contact."
@@ -79,6 +81,7 @@ def execute(arguments: argparse.Namespace) -> int:
     summary = metrics.measure(episode)._asdict()
     write_folder(folder, episode, summary, gif=not arguments.no_gif)
     print(f"results written to {folder}", file=sys.stderr)
+    print(f"replay: {replay_address(folder)}", file=sys.stderr)
     print(as_json(summary) if arguments.json else as_table(summary))
     arrived = summary["outcome"] == "arrived" and not episode.contact
     return 0 if arrived else 1
@@ -89,6 +92,11 @@ def safe_name(scenario: "Scenario") -> str:
     return re.sub(r"[^\w-]+", "_", scenario.name).strip("_") or "scenario"
 
 
+def replay_address(folder: Path) -> str:
+    """The address under which a browser opens the replay in a folder of results."""
+    return (folder / REPORT).absolute().as_uri()
+
+
 def write_folder(folder: Path, episode: "Episode", summary: dict[str, Any], gif: bool) -> None:
     """Writes the summary, the configuration, the episode, its report and its pictures."""
     from dynastar.page import write_report
@@ -96,12 +104,13 @@ def write_folder(folder: Path, episode: "Episode", summary: dict[str, Any], gif:
     io.write_json(folder / "summary.json", summary)
     io.write_json(folder / "config.json", {"scenario": episode.scenario, "config": episode.config})
     io.save_episode(episode, folder / "episode.npz")
-    write_report([episode], folder / "report.html")
+    write_report([episode], folder / REPORT)
     try:
         from dynastar.viewer.figure import draw_episode
     except MissingPackage as missing:
         print(f"without pictures: {missing}", file=sys.stderr)
         return
+    print("drawing the mission", file=sys.stderr)
     draw_episode(episode, folder / "figure.png")
     if gif:
         from dynastar.viewer.animation import animate_episode
