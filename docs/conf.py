@@ -1,5 +1,7 @@
 """Sphinx settings of the documentation: `make docs` builds it into out/docs without network."""
 
+import dataclasses
+import re
 import sys
 from pathlib import Path
 
@@ -22,6 +24,7 @@ myst_heading_anchors = 3
 suppress_warnings = ["myst.header"]
 autodoc_typehints = "signature"
 autodoc_member_order = "bysource"
+autodoc_preserve_defaults = True
 autodoc_class_signature = "mixed"
 
 html_theme = "furo"
@@ -29,6 +32,31 @@ html_title = f"dynastar {release}"
 html_static_path: list[str] = []
 
 
+SHORTER = (  # of what a signature shows, and how it is written in code
+    (
+        r"~?numpy\.ndarray\[tuple\[[^\]]*\], ~?numpy\.dtype\[([^\]]*)\]\]",
+        r"~numpy.typing.NDArray[\1]",
+    ),
+    (
+        r"~?[\w.]*_Buffer \| .*?_NestedSequence\[complex \| bytes \| str\]",
+        "~numpy.typing.ArrayLike",
+    ),
+    (r"= <factory>", "= ..."),
+)
+
+
+def shorten_signature(app, what, name, object_, options, signature, annotation):
+    """Shows arrays and defaults of a signature as they are written in code."""
+    texts = [signature or "", annotation or ""]
+    for long, short in SHORTER:
+        texts = [re.sub(long, short, text) for text in texts]
+    for field in dataclasses.fields(object_) if dataclasses.is_dataclass(object_) else ():
+        if hasattr(field.default, "_fields"):
+            texts[0] = texts[0].replace(tuple.__repr__(field.default), repr(field.default))
+    return texts[0] or None, texts[1] or None
+
+
 def setup(app):
     """Writes the reference pages from the definitions before anything is read."""
+    app.connect("autodoc-process-signature", shorten_signature)
     reference_pages.write(Path(__file__).parent / "reference")

@@ -2,19 +2,39 @@
 
 import argparse
 import inspect
+import math
+import types
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
 
 import dynastar
 from dynastar.cli import build_parser
+from dynastar.config import Field
 from dynastar.io.scenario_schema import scenario_schema
+
+LARGEST_SHOWN = 1e15  # of a range; beyond it any number will do
 
 MODULES = {
     "dynastar.masks": ("SpeedScale", "with_keepout", "with_speed_limits"),
-    "dynastar.planning": ("Planner", "PLANNERS", "segment_clear"),
+    "dynastar.planning": (
+        *("ALGORITHMS", "PLANNERS", "Planner", "plan_by", "HeuristicConfig"),
+        *("SearchGrid", "SearchResult", "smooth", "straighten", "segment_clear"),
+    ),
     "dynastar.io": ("save_ros_map", "load_ros_map", "load_scenarios", "write_json"),
     "dynastar.metrics": ("Metrics", "measure"),
+    "dynastar.viewer.figure": (
+        *("draw_map", "draw_plan", "draw_world", "draw_mission", "draw_episode"),
+        *("episode_view", "label_axes", "label_speeds"),
+    ),
+    "dynastar.viewer.animation": ("animate_episode",),
+    "dynastar.viewer.panels": ("Searched", "draw_searches", "draw_unaware", "draw_driven"),
+    "dynastar.viewer.commands": ("draw_commands",),
+    "dynastar.viewer.intervals": ("Measure", "draw_intervals"),
+    "dynastar.viewer.spread": ("Spread", "Column", "draw_spreads", "draw_columns"),
+    "dynastar.page": ("write_report", "framed"),
     "dynastar.smoothness": (
         "smoothness",
         "jerk",
@@ -58,10 +78,11 @@ def settings() -> str:
         "# Settings of the navigator",
         "",
         "Given as keyword arguments of `NavigatorConfig`, in `[navigator]` of a scenario file, or with",
-        "`--set KEY=VALUE`. Illegal values are refused with the legal range.",
+        "`--set KEY=VALUE`. Illegal values are refused with the legal range. The no-contact guarantee",
+        "assumes the bounds that are declared here.",
         "",
     ]
-    return "\n".join([*parts, *_tables("navigator", table)])
+    return "\n".join([*parts, *_tables("[navigator]", table)])
 
 
 def scenario() -> str:
@@ -95,6 +116,8 @@ def python() -> str:
 
 def _documented(module: str, name: str) -> list[str]:
     thing = getattr(__import__(module, fromlist=[name]), name)
+    if inspect.isclass(thing) and hasattr(thing, "_field_defaults"):
+        return _documented_tuple(f"{module}.{name}", thing)
     if inspect.isclass(thing):
         return [f".. autoclass:: {module}.{name}", "   :members:", ""]
     if inspect.isfunction(thing):
@@ -109,27 +132,80 @@ def _documented(module: str, name: str) -> list[str]:
     return [f".. py:data:: {module}.{name}", "", f"   {kinds}", ""]
 
 
+def _documented_tuple(name: str, cls: Any) -> list[str]:
+    """A named tuple: its docstring, a table of its fields, and its methods."""
+    defaults, hints = cls._field_defaults, get_type_hints(cls, include_extras=True)
+    shown = (f"{key}={_shown(defaults[key])}" if key in defaults else key for key in hints)
+    fields = ", ".join(hints)
+    parts = [f".. autoclass:: {name}({', '.join(shown)})", "   :members:"]
+    parts += [f"   :exclude-members: {fields}", ""]
+    header = ("name", "type", "unit", "range", "default", "meaning")
+    rows = [header, *(_field_row(key, hint, defaults) for key, hint in hints.items())]
+    used = [i for i in range(len(header)) if any(row[i] for row in rows[1:])]
+    parts += ["   .. list-table::", "      :header-rows: 1", ""]
+    for row in rows:
+        cells = [row[i] for i in used]
+        parts += [f"      * - {cells[0]}", *(f"        - {cell}" for cell in cells[1:])]
+    return [*parts, ""]
+
+
+def _field_row(name: str, hint: Any, defaults: dict[str, Any]) -> tuple[str, ...]:
+    """The cells of a field's row."""
+    field = Field("")
+    if get_origin(hint) is Annotated:
+        hint, field = get_args(hint)[:2]
+    low, high = field.low, field.high
+    legal = f"{low:g} to {high:g}" if math.isfinite(low) and high <= LARGEST_SHOWN else ""
+    default = f"``{_shown(defaults[name])}``" if name in defaults else ""
+    return f"``{name}``", _type(hint), field.unit, legal, default, field.doc
+
+
+def _shown(value: Any) -> str:
+    """A default as it is written in Python; of settings the class alone."""
+    if hasattr(value, "_field_defaults"):
+        return f"{type(value).__name__}(...)" if value else f"{type(value).__name__}()"
+    return repr(value)
+
+
+def _type(hint: Any) -> str:
+    """A declared type in words."""
+    if get_origin(hint) is Literal:
+        return ", ".join(f"``{value!r}``" for value in get_args(hint))
+    if hint is type(None):
+        return "None"
+    if get_origin(hint) in (Union, types.UnionType):
+        return " or ".join(_type(one) for one in get_args(hint))
+    if get_origin(hint) is Annotated:
+        return _type(get_args(hint)[0])
+    if get_origin(hint) in (tuple, list):
+        inner = [one for one in get_args(hint) if one is not Ellipsis]
+        kind = get_origin(hint).__name__
+        return f"{kind} of {', '.join(dict.fromkeys(map(_type, inner)))}"
+    if get_origin(hint) is np.ndarray:
+        return "array"
+    return str(getattr(hint, "__name__", hint))
+
+
 def _tables(name: str, schema: dict[str, Any]) -> Iterator[str]:
     """A table of keys for an object, and then for each object in it."""
     nested = []
-    yield from [f"## `[{name}]`" if name else "## The file", ""]
+    yield from [f"## `{name}`" if name else "## The file", ""]
     if schema.get("description"):
-        yield from [schema["description"].replace("``", "`"), ""]
-    yield from ["| key | value | default | meaning |", "|:--|:--|:--|:--|"]
+        words = schema["description"].replace("``", "`")
+        yield from [words[0].upper() + words[1:], ""]
+    yield from ["| key | type | unit | range | default | meaning |", "|:--|:--|:--|:--|:--|:--|"]
     for key, of in schema["properties"].items():
         inner = _objects(of)
         if inner:
-            nested.append((f"{name}.{key}" if name else key, inner))
-        default = of.get("default")
-        shown = (
-            ""
-            if default is None
-            else f"`{str(default).lower() if default in (True, False) else default}`"
-        )
+            path = f"{name.strip('[]')}.{key}" if name else key
+            nested.append((f"[[{path}]]" if of.get("type") == "array" else f"[{path}]", inner))
+        shown = _default(of.get("default"))
         if key in schema.get("required", ()):
             shown = "required"
-        words = of.get("description", "") if not inner or of.get("type") != "object" else ""
-        yield f"| `{key}` | {_kind(of)} | {shown} | {words.replace('``', '`')} |"
+        unit = of.get("unit", "")
+        words = of.get("description", "").removesuffix(f" ({unit})").replace("``", "`")
+        words = words.partition(". ")[0] if inner else words
+        yield f"| `{key}` | {_kind(of)} | {unit} | {_range(of)} | {shown} | {words} |"
     yield ""
     for path, inner in nested:
         yield from _tables(path, inner)
@@ -152,10 +228,31 @@ def _kind(schema: dict[str, Any]) -> str:
             return f"{len(schema['prefixItems'])} numbers"
         inner = schema.get("items", {})
         if "prefixItems" in inner:
-            return f"list of {_kind(inner)}"
-        return "list of tables" if _objects(schema) else f"list of {inner.get('type', 'values')}s"
+            return f"list of {_kind(inner)} each"
+        if "oneOf" in inner:
+            return f"list, each {_kind(inner)}"
+        return "list of tables" if _objects(schema) else f"list of {inner.get('type', 'value')}s"
     if schema.get("type") == "object":
         return "table"
-    low, high = schema.get("minimum"), schema.get("maximum")
-    limits = f", {low:g} to {high:g}" if low is not None and high is not None else ""
-    return f"{schema.get('type', '')}{limits}"
+    return str(schema.get("type", ""))
+
+
+def _range(schema: dict[str, Any]) -> str:
+    """A value's range in words."""
+    inner: dict[str, Any] = schema
+    while "minimum" not in inner and ("items" in inner or "prefixItems" in inner):
+        items = inner.get("items") or inner["prefixItems"][0]
+        if "prefixItems" in inner and any(one != items for one in inner["prefixItems"]):
+            return ""
+        inner = items
+    low, high = inner.get("minimum"), inner.get("maximum")
+    if low is None:
+        return ""
+    return f"from {low:g}" if high is None or high > LARGEST_SHOWN else f"{low:g} to {high:g}"
+
+
+def _default(value: Any) -> str:
+    """A default as it is written in a scenario file."""
+    if value is None:
+        return ""
+    return f"`{str(value).lower() if isinstance(value, bool) else value}`"

@@ -1,5 +1,6 @@
 """The pages say what is so: names exist, pictures are there, tables have their places."""
 
+import html
 import re
 import shlex
 import subprocess
@@ -13,15 +14,20 @@ from dynastar.bench.table1 import LARGE
 from dynastar.bench.tables import as_markdown
 from dynastar.cli import main
 from dynastar.navigator import NavigatorConfig
+from dynastar.planning import ALGORITHMS
 
 ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT / "docs"))
+import reference_pages  # noqa: E402
+
 SOURCES = ROOT / "src" / "dynastar"
 PAPER = (ROOT / "docs" / "paper.md").read_text(encoding="utf-8")
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "SECURITY.md"]
+PAGES += [*sorted((ROOT / "docs").glob("*.md"))]
 PAGES += [
     page for page in sorted((ROOT / "docs").glob("*/*.md")) if page.parent.name != "reference"
 ]
-LESSONS = [ROOT / "docs" / "tutorial.md", *sorted((ROOT / "docs" / "how-to").glob("*.md"))]
+LESSONS = sorted((ROOT / "docs" / "how-to").glob("*.md"))  # the tutorial: test_tutorial.py
 
 SIMULATORS = {"ir-sim": "irsim", "navground": "navground"}  # pages that need a package
 
@@ -145,3 +151,30 @@ def test_the_documentation_is_built_without_a_warning(tmp_path):
         text = (tmp_path / "site" / f"{page}.html").read_text("utf-8")
         outside = re.findall(r'(?:src|rel="stylesheet" href)="(https?://[^"]*)"', text)
         assert not outside, f"{page} loads {outside[:3]} from the network"
+        words = html.unescape(re.sub(r"<[^>]+>", "", text))
+        for dump in ("Alias for field", "Annotated[", "Field(doc=", "_Buffer", "<factory"):
+            assert dump not in words, page
+
+
+@pytest.mark.parametrize("page", ["settings", "scenario"])
+def test_every_setting_and_every_key_has_a_meaning_and_no_odd_words(page):
+    text = getattr(reference_pages, page)()
+    rows = [line.split(" | ") for line in text.splitlines() if line.startswith("| `")]
+    assert len(rows) > 50
+    for row in rows:
+        key, kind, _unit, _range, _default, meaning = row
+        assert kind.strip(), key
+        assert len(meaning.removesuffix("|").strip()) > 3, key
+    assert "valuess" not in text
+    assert "e+18" not in text
+
+
+def test_the_settings_page_shows_the_navigators_own_defaults():
+    [row] = re.findall(r"^\| `exact` .*", reference_pages.settings(), re.MULTILINE)
+    assert f"`{str(NavigatorConfig().planner.exact).lower()}`" in row
+
+
+def test_the_python_page_has_a_table_for_settings_and_all_planners():
+    text = reference_pages.python()
+    for words in ("deceleration", "m/s2", "``v_brake``", *ALGORITHMS, "animate_episode"):
+        assert words in text, words

@@ -30,9 +30,9 @@ def scenario_schema() -> Schema:
     pair = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 3}
     place = {"oneOf": [pair, _table(PlaceTable)]}
     speed_limit = _table(SpeedScale) | {"required": ["mask"]}
-    speed_limit["properties"]["mask"] = map_
+    speed_limit["properties"]["mask"] = {**map_, "description": "the mask, drawn as a map"}
     robot = _table(RobotTable)
-    robot["properties"]["base"] = {"enum": list(ROBOTS)}
+    robot["properties"]["base"] |= {"enum": list(ROBOTS)}
     robot["properties"]["limits"] = _optional(_table(Limits))
     sensor = _optional(_table(Lidar))
     sensor["properties"] |= _table(Noise)["properties"]
@@ -53,19 +53,21 @@ def scenario_schema() -> Schema:
         "navigator": _optional(_table(NavigatorConfig)),
     }
     schema = _table(ScenarioTable)
-    schema["properties"] |= known
+    for name, of in known.items():  # a meaning in the file goes before that of a table alone
+        schema["properties"][name] = of | schema["properties"][name]
     schema["oneOf"] = [{"required": ["goal"]}, {"required": ["goals"]}]
     return {"$schema": DIALECT, "title": "dynastar scenario", **schema}
 
 
-def _table(cls: Any) -> Schema:
-    """A table with the keys of a NamedTuple."""
+def _table(cls: Any, given: Any = None) -> Schema:
+    """A table with the keys of a NamedTuple, and the defaults of an instance where one is ``given``."""
     hints = get_type_hints(cls, include_extras=True)
-    defaults = cls._field_defaults
+    defaults = cls._field_defaults if given is None else given._asdict()
     properties = {}
     for name, hint in hints.items():
-        properties[name] = _value(hint)
         default = defaults.get(name)
+        nested = hasattr(default, "_field_defaults")
+        properties[name] = _table(hint, default) if nested else _value(hint)
         if isinstance(default, bool | int | float | str) and default not in ("", math.inf):
             properties[name]["default"] = default
     schema: Schema = {
@@ -121,4 +123,5 @@ def _described(schema: Schema, field: Field | None) -> Schema:
     if field is None or not field.doc:
         return schema
     unit = f" ({field.unit})" if field.unit else ""
-    return {**schema, "description": f"{field.doc}{unit}"}
+    described = {**schema, "description": f"{field.doc}{unit}"}
+    return {**described, "unit": field.unit} if field.unit else described

@@ -75,7 +75,7 @@ class LidarDriver(NamedTuple):
         Field("least and largest number of readings, drawn anew for each scan", "", 2, 20000),
     ] = None
     rounding: Annotated[float, Field("step to which ranges are rounded", "m", 0.0, 1.0)] = 0.0
-    posts: tuple[Post, ...] = ()
+    posts: Annotated[tuple[Post, ...], Field("parts of the robot that the lidar sees")] = ()
 
 
 @self_checking
