@@ -1,4 +1,4 @@
-"""The README's figures are those of the run and the tables that they name."""
+"""The figures of the README and of the targets are those of the run and the tables that they name."""
 
 import re
 from pathlib import Path
@@ -8,6 +8,7 @@ import pytest
 from PIL import Image
 
 from dynastar import io
+from dynastar.bench.statistics import wilson
 from dynastar.io.examples import example_scenarios
 from dynastar.metrics import measure
 from dynastar.viewer.animation import animate_episode
@@ -15,6 +16,7 @@ from dynastar.viewer.animation import animate_episode
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 PAPER = (ROOT / "docs" / "paper.md").read_text(encoding="utf-8")
+BENCHMARKS = (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
 CLOSE = 0.03  # of a figure: on another processor the robot may meet people at other times
 
 
@@ -46,32 +48,73 @@ def test_the_animation_is_todays(demo, tmp_path):
     assert apart.mean() < 0.01
 
 
+def test_the_first_picture_moves_and_is_small():
+    [name] = re.findall(r"!\[[^\]]+\]\(([^)]+)\)", README)[:1]
+    assert (ROOT / name).stat().st_size < 1_000_000
+    with Image.open(ROOT / name) as image:
+        assert image.n_frames > 50
+
+
 def last_frame(path):
     with Image.open(path) as image:
         image.seek(image.n_frames - 1)
         return np.asarray(image.convert("RGB")).astype(int)
 
 
+def table(name):
+    """The rows of a table of the paper's page: cells by the first one."""
+    part = PAPER.partition(f"<!-- {name} -->")[2].partition(f"<!-- end {name} -->")[0]
+    rows = (re.split(r" *\| *", line.strip("| ")) for line in part.splitlines() if "|" in line)
+    return {first: cells for first, *cells in rows}
+
+
 def test_the_papers_figures_are_those_of_its_page():
-    """Each figure of a row that `dynastar paper` measures is in the table of targets, as it is rounded."""
-    targets = PAPER.partition("<!-- targets -->")[2].partition("<!-- end targets -->")[0]
-    line = r"^\| ([^|]+) \|[^|]*\| ([^|]+) \|"
-    measured = dict(re.findall(line, targets, re.M))
+    targets, length, time = table("targets"), table("table1-length"), table("table1-time")
     line = r"^\| ([^|]+) \| `dynastar paper \w+` \|[^|]*\| ([^|]+) \|"
-    shown = dict(re.findall(line, README, re.M))
-    for row, names, digits in (
-        ("cells expanded over traditional A*, 1000 maps, median", ["cells, median, all"], 2),
-        ("length over traditional A*, median and 95th percentile",
-         ["any angle: length, median", "any angle: length, p95, all"], 2),
-        ("search and smoothing over the traditional search, time",
-         ["search and fast smoothing: time, median"], 2),
+    shown = dict(re.findall(line, BENCHMARKS, re.M))
+    for row, wanted in (
+        ("cells expanded over traditional A*, 1000 maps, median", [targets["cells, median, all"][1]]),
+        ("length, fast smoothing, over traditional A*, median and 95th percentile",
+         [length["improved, fast smoothing"][i] for i in (1, 3)]),
+        ("search and fast smoothing over the traditional search, time",
+         [targets["search and fast smoothing: time, median"][1]]),
     ):  # fmt: skip
-        wanted = [f"{float(measured[name]):.{digits}f}" for name in names]
-        assert re.findall(r"\d\.\d+", shown[row]) == wanted, row
+        rounded = [f"{float(figure):.2f}" for figure in wanted]
+        assert re.findall(r"\d\.\d+", shown[row]) == rounded, row
+    ours = (time["improved, fast smoothing"], length["improved, fast smoothing"])
+    others = (time["traditional, fast smoothing"], length["traditional, fast smoothing"])
+    [said] = re.findall(r"^\| search, smoothed path.*", README, re.M)
+    quartiles = [row[i] for row in (*ours, *others) for i in (1, 0, 2)]
+    assert re.findall(r"\d\.\d\d", said) == [f"{float(figure):.2f}" for figure in quartiles]
+
+
+def test_the_readmes_intervals_are_those_of_its_counts():
+    found = re.findall(r"(\d+) of (\d+) \((\d+)-(\d+)\)", README)
+    assert len(found) > 14
+    for done, trials, low, high in found:
+        interval = wilson(int(done), int(trials))
+        assert [round(100.0 * end) for end in interval] == [int(low), int(high)], (done, trials)
+
+
+@pytest.mark.parametrize(
+    ("suite", "row"),
+    [("barn", "BARN"), ("dynabarn", "DynaBARN"), ("maps", "real maps"), ("people", "people who")],
+)
+def test_the_readmes_counts_are_those_of_the_benchmarks_page(suite, row):
+    [said] = re.findall(rf"^\| {row}.*", README, re.M)
+    [cells] = re.findall(rf"^\| `{suite}` \| (\d+ of \d+ \(\d.*)", BENCHMARKS, re.M)
+    navigator, pursuit, kompass = re.findall(r"\d+ of \d+", cells)
+    assert re.findall(r"\d+ of \d+", said) == [navigator, kompass, pursuit]
+
+
+def test_the_readme_is_short():
+    assert len(README.splitlines()) <= 110
 
 
 def test_the_missions_in_the_papers_worlds_are_those_of_its_page():
-    row = next(line for line in README.splitlines() if "worlds like the paper's" in line)
+    row = next(
+        line for line in BENCHMARKS.splitlines() if "| worlds like the paper's: arrived" in line
+    )
     table = PAPER.partition("<!-- table3-presets -->")[2]
     line = r"^\| default \| (\d+) \| (\d+) \|[^|]*\| (\d+) \|"
     worlds, arrived, moving = map(int, re.search(line, table, re.M).groups())
