@@ -37,6 +37,7 @@ def watch(address: str, seconds: float) -> dict[str, float]:
     with connect(address.replace("http", "ws", 1) + "socket", max_size=None) as socket:
         for name, value in SAMPLES.items():
             socket.send(json.dumps({"type": "set", "name": name, "value": value}))
+        socket.send(json.dumps({"type": "pause", "paused": False}))
         begin = time.monotonic() + WARM
         samples = 0
         while time.monotonic() < begin + seconds:

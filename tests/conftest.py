@@ -55,6 +55,21 @@ def chromium():
         browser.close()
 
 
+@pytest.fixture(scope="session")
+def complaints():
+    """What axe-core finds on a page that is serious or critical: elements by rule."""
+    axe = pytest.importorskip("axe_playwright_python.sync_playwright").Axe()
+
+    def found(page) -> dict[str, list]:
+        return {
+            rule["id"]: [node["html"][:120] for node in rule["nodes"]]
+            for rule in axe.run(page).response["violations"]
+            if rule["impact"] in ("serious", "critical")
+        }
+
+    return found
+
+
 @pytest.fixture
 def page(chromium):
     """A page whose errors fail the test."""

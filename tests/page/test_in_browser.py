@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from browsing import fading, hidden_by_its_box, too_small
 from dynastar import io
 from dynastar.page import write_report
 
@@ -77,6 +78,35 @@ def test_a_candidate_says_why(page, report):
         page.mouse.move(box["x"] + box["width"] * part / 40, box["y"] + 14)
         said.add(page.locator(".hint").inner_text())
     assert any("score" in words or "refused:" in words for words in said)
+
+
+def test_it_is_said_while_it_plays(page, report):
+    opened(page, report[0] / "one.html")
+    page.evaluate("dynastar.seek(2)")
+    x, y, _ = page.evaluate("dynastar.panels()[0].candidates.dots[5]")
+    box = page.locator("canvas.window").bounding_box()
+    page.mouse.move(box["x"] + x, box["y"] + y)
+    page.keyboard.press(" ")
+    page.wait_for_function("dynastar.time() > 3")
+    assert "Point at one" not in page.locator(".hint").inner_text()
+
+
+def test_controls_fit_a_finger_and_the_legend_hides_layers(page, report):
+    opened(page, report[0] / "one.html")
+    page.evaluate("dynastar.seek(4)")
+    assert too_small(page) == []
+    assert page.locator("#legend label").count() == 8
+    assert all(hidden_by_its_box(page, layer) for layer in ("plans", "driven", "candidates"))
+    assert fading(page) == pytest.approx([1.0, 0.5, 0.1, 0.0])
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("name", ["one.html", "two.html"])
+def test_axe_finds_nothing_serious(page, report, complaints, name, scheme):
+    page.emulate_media(color_scheme=scheme)
+    opened(page, report[0] / name)
+    page.evaluate("dynastar.seek(4)")
+    assert complaints(page) == {}
 
 
 def test_two_episodes_share_the_clock_and_a_phone_shows_them_below_each_other(page, report):

@@ -4,6 +4,7 @@ import re
 
 import pytest
 
+from browsing import fading, hidden_by_its_box, too_small
 from playing import ended, started
 
 pytest.importorskip("starlette")
@@ -25,7 +26,7 @@ def live(page, address):
     page.goto(address)
     page.wait_for_function("window.dynastar && dynastar.frame()")
     page.keyboard.press("r")
-    page.wait_for_function("dynastar.frame().time < 1")
+    page.wait_for_function("dynastar.page.live.waiting")
     return page
 
 
@@ -91,6 +92,83 @@ def test_it_draws_under_its_content_security_policy(chromium, address):
     page.close()
     assert drawn[-1] >= 10
     assert errors == []
+
+
+def test_a_scene_waits_for_the_first_goal(live, tmp_path):
+    assert live.locator("#pause").inner_text() == "Start"
+    assert live.locator(".words").inner_text().startswith("ready\nClick on the map")
+    keep(live, "waiting", tmp_path)
+    live.evaluate("drawCallout = (view, words) => { window.said = words; }")
+    live.wait_for_function("window.said === 'click to send me'")
+    live.wait_for_timeout(300)
+    assert live.evaluate("dynastar.frame().time") == 0.0
+    live.keyboard.press("g")
+    click(live, 3.0, 8.0)
+    live.wait_for_function("dynastar.frame().time > 0.3")
+    assert live.locator("#pause").inner_text() == "Pause"
+
+
+def test_goals_and_walkers_set_while_it_is_paused_are_drawn(live):
+    live.keyboard.press("g")
+    click(live, 4.0, 8.5)
+    live.wait_for_function("dynastar.frame().time > 0.3")
+    live.locator("#pause").click()
+    live.wait_for_function("dynastar.page.paused")
+    time, before = live.evaluate("dynastar.frame().time"), live.locator("canvas.map").screenshot()
+    click(live, 3.0, 3.0)
+    live.wait_for_function("Math.abs(dynastar.page.live.scene.goals[0][1] - 3) < 0.05")
+    stroke(live, "w", (4.5, 7.5), (4.5, 7.5))
+    live.wait_for_function("dynastar.page.live.frame().movers.length === 1")
+    live.wait_for_timeout(100)
+    assert live.locator("canvas.map").screenshot() != before
+    assert live.evaluate("dynastar.frame().time") == time
+
+
+def test_pointing_at_a_candidate_says_why_while_it_drives(live):
+    live.keyboard.press("g")
+    click(live, 4.0, 8.5)
+    live.wait_for_function("dynastar.frame().candidates.length > 20")
+    x, y, _ = live.evaluate("dynastar.page.panel.candidates.dots[5]")
+    box = live.locator("canvas.window").bounding_box()
+    live.mouse.move(box["x"] + x, box["y"] + y)
+    live.wait_for_function("dynastar.page.panel.candidates.hint.textContent.includes('score')")
+    time, said = live.evaluate("dynastar.frame().time"), set()
+    while live.evaluate("dynastar.frame().time") < time + 0.5:
+        said.add(live.locator(".hint").inner_text())
+    assert said
+    assert not any("Point at one" in words for words in said)
+
+
+def test_the_settings_are_beside_the_map_and_controls_fit_a_finger(live):
+    here, there = (live.locator(k).bounding_box() for k in ("canvas.map", "#sliders"))
+    assert there["x"] >= here["x"] + here["width"]
+    assert there["y"] < here["y"] + 0.5 * here["height"]
+    assert too_small(live) == []
+    live.set_viewport_size({"width": 390, "height": 800})
+    assert too_small(live) == []
+
+
+def test_the_legend_hides_layers_and_old_paths_fade(live):
+    assert live.locator("#legend label").count() == 8
+    assert live.locator("#legend .sign").count() == 14
+    live.keyboard.press("g")
+    click(live, 4.5, 8.5)
+    live.wait_for_function("dynastar.page.live.end > 1")
+    live.locator("#pause").click()
+    live.wait_for_function("dynastar.page.paused")
+    assert all(hidden_by_its_box(live, layer) for layer in ("plans", "driven", "candidates"))
+    assert fading(live) == pytest.approx([1.0, 0.5, 0.1, 0.0])
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_nothing_serious(live, complaints, scheme):
+    live.emulate_media(color_scheme=scheme)
+    live.keyboard.press("g")
+    click(live, 0.1, 0.1)
+    click(live, 4.0, 8.5)
+    live.wait_for_function("dynastar.frame().candidates.length > 20")
+    assert live.locator("#message").is_visible()
+    assert complaints(live) == {}
 
 
 def test_a_drag_sets_the_heading(live):
@@ -165,6 +243,14 @@ def test_what_is_refused_is_said(live):
     live.keyboard.press("g")
     click(live, 0.1, 0.1)
     live.wait_for_function("document.getElementById('notice').textContent.includes('wall')")
+    live.locator("#dismiss").click()
+    assert not live.locator("#message").is_visible()
+    click(live, 0.1, 0.1)
+    live.locator("#notice").click()
+    assert not live.locator("#message").is_visible()
+    click(live, 0.1, 0.1)
+    live.locator("#message").wait_for(state="visible")
+    live.locator("#message").wait_for(state="hidden")
 
 
 def test_a_replay_of_what_was_driven_is_scrubbed(live, tmp_path):

@@ -170,6 +170,7 @@ def test_a_thousand_malformed_messages_leave_it_running(address):
         page.until(lambda one: False)
     page = Page(address)
     page.socket.send(b"\xff\xfe")
+    watcher.ask(type="pause", paused=False)
     ticks = watcher.until(lambda one: one["type"] == "loop")["ticks"]
     watcher.until(lambda one: one["type"] == "loop" and one["ticks"] > ticks + 10)
     watcher.ask(type="reset")
@@ -178,6 +179,7 @@ def test_a_thousand_malformed_messages_leave_it_running(address):
 
 def test_a_flood_and_a_page_that_takes_nothing_do_not_slow_the_robot(address):
     watcher, deaf = Page(address), Page(address)
+    watcher.ask(type="pause", paused=False)
     calm = watcher.rate(4.0)
     deaf.ask(type="reset")
     over, sent, pages = threading.Event(), [], []

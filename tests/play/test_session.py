@@ -274,12 +274,31 @@ def test_settings_that_cannot_be_change_nothing(field, name, value, says):
 
 
 def test_it_pauses_and_steps(field):
+    ask(field, type="pause", paused=False)
     with pytest.raises(InputError, match="pause first"):
         ask(field, type="step")
     ask(field, type="pause", paused=True)
     assert field.paused
     ask(field, type="step")
     assert field.scenery.world.time == pytest.approx(session.PERIOD)
+
+
+def test_a_scene_waits_for_its_first_goal_and_shows_what_is_set_meanwhile(field):
+    assert field.paused
+    assert json.loads(field.journal.frame)["time"] == 0.0
+    ask(field, type="walker", x=6.0, y=7.0, vx=0.0, vy=0.0)
+    assert len(json.loads(field.journal.frame)["movers"]) == 1
+    ask(field, type="goals", goals=[])
+    assert field.paused
+    ask(field, type="goals", goals=[[4.0, 2.0, None]])
+    assert not field.paused
+    drive(field, 1.0)
+    ask(field, type="pause", paused=True)
+    ask(field, type="goals", goals=[[4.0, 4.0, None]])
+    assert field.paused
+    assert json.loads(field.journal.frame)["goals"] == [[4.0, 4.0, None]]
+    ask(field, type="reset")
+    assert field.paused
 
 
 def test_scenes_are_changed(field):

@@ -17,7 +17,7 @@ from dynastar.errors import InputError
 from dynastar.io.files import jsonable, written_aside
 from dynastar.page.packing import filled, grid_data, packed, runs, words
 
-SCRIPTS = ("scene.js", "charts.js", "panel.js", "report.js")
+SCRIPTS = ("scene.js", "charts.js", "legend.js", "panel.js", "report.js")
 MOST = 2  # episodes side by side
 
 

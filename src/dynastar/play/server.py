@@ -30,7 +30,7 @@ from dynastar.play.loop import Loop, News
 from dynastar.play.messages import MOST_BYTES, read_message
 from dynastar.play.session import Session
 
-SCRIPTS = ("scene.js", "charts.js", "panel.js", "play.js")
+SCRIPTS = ("scene.js", "charts.js", "legend.js", "panel.js", "live.js", "hand.js", "play.js")
 HEADERS = {
     "Cache-Control": "no-store",
     "Referrer-Policy": "no-referrer",

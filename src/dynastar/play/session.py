@@ -22,7 +22,7 @@ from dynastar.simulation import Scenario
 from dynastar.simulation.loop_timer import LoopTimer
 from dynastar.simulation.record import Recorder, goal_table
 from dynastar.simulation.run import effective_config
-from dynastar.simulation.tracing import Tracer
+from dynastar.simulation.tracing import Tracer, considered
 
 PERIOD = 0.05  # s
 RECORDED = 600.0  # s that a recording holds at most; then the next begins
@@ -32,8 +32,8 @@ class Session:
     """Drives a scenario period by period, and carries out what messages ask for.
 
     ``journal`` is what has to be told of it, ``paused`` whether time stands still, ``lasted`` the
-    length of the last tick (s). ``scenes`` are scenario files by name. Everything is called from one
-    thread.
+    length of the last tick (s). ``scenes`` are scenario files by name. A scene begins paused, and its
+    first goal starts it. Everything is called from one thread.
     """
 
     def __init__(self, scenario: Scenario, scenes: Mapping[str, Path]) -> None:
@@ -55,18 +55,20 @@ class Session:
     def take(self, message: ask.Message) -> None:
         """Carries out a message. InputError, with the reason, changes nothing."""
         self._carry_out[type(message)](message)
+        if self.paused:
+            self._show()
 
     # -- the scene --------------------------------------------------------------------------------
 
     def _open(self, scenario: Scenario) -> None:
         scenario = replace(scenario, navigator={**scenario.navigator, "period": PERIOD})
-        self._made, self.paused = scenario, False
+        self._made = scenario
         self._begin(scenario)
 
     def _begin(self, scenario: Scenario) -> None:
         """Begins a scene; ``_scenario`` is it as it was made, with what has been set since."""
         config = effective_config(scenario)
-        self._scenario, self.scenery = scenario, Scenery(scenario)
+        self._scenario, self.scenery, self.paused = scenario, Scenery(scenario), True
         self._timer, self.lasted = LoopTimer(scenario.loop, PERIOD, scenario.seed), PERIOD
         self.touched, self.halted = {"moving": 0, "resting": 0}, ""
         self._drive(config, scenario.goals)
@@ -94,6 +96,8 @@ class Session:
                 **self._settings(),
             }
         )
+        self._last = Twist(0.0, 0.0), 0.0, considered(self.navigator.status)
+        self._show()
 
     def _settings(self) -> dict[str, Any]:
         """The settings as the page takes them."""
@@ -120,10 +124,11 @@ class Session:
         status = navigator.status
         self._recorder.tick(command, command_ms, status)
         self._ticks += 1
-        considered, cells = self._tracer.tick(status)
+        thought, cells = self._tracer.tick(status)
         if len(cells):
             self.journal.say("seen", cells=cells)
-        self._show(command, command_ms, considered)
+        self._last = command, command_ms, thought
+        self._show()
         self.lasted = self._timer.next() - world.time
         world.step(command, self.lasted)
         if world.contact:
@@ -131,12 +136,14 @@ class Session:
         if world.time - self._since > RECORDED:
             self._record()
 
-    def _show(self, command: Twist, command_ms: float, considered: Any) -> None:
+    def _show(self) -> None:
+        """Show the world as it is now, with the last command and what was considered for it."""
+        command, command_ms, thought = self._last
         status, goals = self.navigator.status, tuple(self.navigator.mission.goals)
         self.journal.read(self._recorder)
         self.journal.show(
             {
-                **frame_data(self.scenery.world, goals, status, considered),
+                **frame_data(self.scenery.world, goals, status, thought),
                 "command": list(command),
                 "commandMs": round(command_ms, 2),
                 "touched": self.touched,
@@ -165,6 +172,8 @@ class Session:
         if len(goals) > ask.MOST_GOALS:
             raise InputError(f"{len(goals)} goals: at most {ask.MOST_GOALS} are taken")
         self._aim(goals)
+        if goals and self.scenery.world.time == 0.0:
+            self.paused = False
 
     def _stroke(self, message: ask.Stroke) -> None:
         self.scenery.stroke(message)

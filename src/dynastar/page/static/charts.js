@@ -92,9 +92,11 @@ class Chart {
 // Candidates as dots, omega to the left as the robot turns, v upwards; says what is under the pointer.
 class WindowChart {
   constructor(canvas, hint, refusals) {
-    Object.assign(this, { canvas, hint, refusals, frame: null, dots: [] });
-    canvas.addEventListener("pointermove", (event) => this.point(event.offsetX, event.offsetY));
-    canvas.addEventListener("pointerleave", () => { this.hint.textContent = this.summary(); });
+    Object.assign(this, { canvas, hint, refusals, frame: null, dots: [], at: null });
+    const point = (event) => this.point([event.offsetX, event.offsetY]);
+    canvas.addEventListener("pointerdown", point);
+    canvas.addEventListener("pointermove", point);
+    canvas.addEventListener("pointerleave", (event) => { if (event.pointerType === "mouse") this.point(null); });
     new ResizeObserver(() => this.frame && this.draw(this.frame)).observe(canvas);
   }
 
@@ -109,8 +111,12 @@ class WindowChart {
     const [context, width, height] = sized(this.canvas), palette = colours();
     const all = frame.candidates, edge = 14;
     this.dots = [];
-    this.hint.textContent = this.summary();
-    if (!all.length) return;
+    if (all.length) this.drawDots(context, width, height, edge, palette);
+    this.describe(context, palette);
+  }
+
+  drawDots(context, width, height, edge, palette) {
+    const { frame } = this, all = frame.candidates;
     const most = Math.max(0.1, ...all.map((one) => Math.abs(one.omega)));
     const top = Math.max(0.1, ...all.map((one) => one.v)), low = Math.min(0, ...all.map((one) => one.v));
     const x = (omega) => width / 2 - (width / 2 - edge) * omega / most;
@@ -141,15 +147,28 @@ class WindowChart {
     }
   }
 
-  point(px, py) {
+  // Takes where the pointer is, or null: what lies there is described with every drawing until it leaves.
+  point(at) {
+    this.at = at;
+    if (this.frame) this.draw(this.frame);
+  }
+
+  describe(context, palette) {
     let best = null, least = 14;
-    for (const [x, y, one] of this.dots) {
-      const apart = Math.hypot(x - px, y - py);
-      if (apart < least) { least = apart; best = one; }
+    for (const dot of this.at ? this.dots : []) {
+      const apart = Math.hypot(dot[0] - this.at[0], dot[1] - this.at[1]);
+      if (apart < least) { least = apart; best = dot; }
     }
-    if (!best) return;
-    const why = best.refused !== 0 ? `refused: ${this.refusals[best.refused] || "not admissible"}`
-      : Number.isFinite(best.score) ? `score ${best.score.toFixed(3)}` : "admissible, but each of its manoeuvres touches an obstacle";
-    this.hint.textContent = `v ${best.v.toFixed(2)} m/s, omega ${best.omega.toFixed(2)} rad/s: ${why}`;
+    if (!best) {
+      this.hint.textContent = this.summary();
+      return;
+    }
+    const [x, y, one] = best;
+    disc(context, x, y, 11);
+    context.strokeStyle = palette.plan;
+    context.stroke();
+    const why = one.refused !== 0 ? `refused: ${this.refusals[one.refused] || "not admissible"}`
+      : Number.isFinite(one.score) ? `score ${one.score.toFixed(3)}` : "admissible, but each of its manoeuvres touches an obstacle";
+    this.hint.textContent = `v ${one.v.toFixed(2)} m/s, omega ${one.omega.toFixed(2)} rad/s: ${why}`;
   }
 }

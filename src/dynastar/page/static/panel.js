@@ -1,10 +1,5 @@
 // What is shown of one robot beside its map: state, numbers, the window, lines over time, events.
 
-const LAYERS = { explored: "explored cells", seen: "sensed obstacles", plans: "paths", driven: "driven",
-  candidates: "candidates", movers: "true positions", tracks: "tracked, predicted 1 s and 2 s ahead",
-  follow: "follow the robot" };
-
-const layers = {};
 const TERM_SHADES = ["plan", "occupied", "driven", "seen", "contact"];
 
 function element(kind, attributes = {}, ...children) {
@@ -18,16 +13,6 @@ function element(kind, attributes = {}, ...children) {
 }
 
 const number = (value, digits, unit) => (Number.isFinite(value) ? `${value.toFixed(digits)} ${unit}` : "-");
-
-// Boxes that choose the layers of all maps.
-function makeLayers(redraw) {
-  for (const [name, title] of Object.entries(LAYERS)) {
-    layers[name] = name !== "follow";
-    const box = element("input", { type: "checkbox", checked: layers[name] });
-    box.addEventListener("change", () => { layers[name] = box.checked; redraw(); });
-    document.getElementById("layers").append(element("label", {}, box, ` ${title}`));
-  }
-}
 
 // Cells over a grid's extent in a frame whose cells may be smaller than the grid's.
 function cellsOver(grid, frame) {
@@ -51,8 +36,8 @@ class Panel {
     this.words = element("div", { className: "words" });
     this.numbers = element("dl", { className: "numbers" });
     const hint = element("p", { className: "hint" });
-    this.log = element("ol", { className: "log", ariaLabel: "Events" });
-    const charts = element("div", { className: "charts" });
+    this.log = element("ol", { className: "log", ariaLabel: "Events", tabIndex: 0 });
+    const charts = this.chartsPlace = element("div", { className: "charts" });
     this.root = element("section", { className: "view" },
       element("h1", {}, `${source.name} `, element("small", {}, source.about)),
       element("div", { className: "parts" }, this.map,
@@ -66,6 +51,9 @@ class Panel {
     this.items = [];
     for (const [time, text] of source.entries) this.addEntry(time, text);
   }
+
+  // Takes a part of the page in below the map.
+  hold(part) { this.root.insertBefore(part, this.chartsPlace); }
 
   addEntry(time, text) {
     const words = `${time.toFixed(1)} s  ${text}`;
@@ -105,7 +93,7 @@ class Panel {
       chart.draw(Math.min(time, this.source.end));
     }
     this.words.replaceChildren(element("b", {}, frame.state), frame.reason);
-    const rows = [["v", number(frame.twist[0], 2, "m/s")], ["omega", number(frame.twist[1], 2, "rad/s")],
+    const rows = [["speed", number(frame.twist[0], 2, "m/s")], ["turning rate", number(frame.twist[1], 2, "rad/s")],
       ["clearance", number(frame.clearance, 2, "m")], ["limited by", frame.limit || "-"], ["path", frame.planReason || "-"]];
     this.numbers.replaceChildren(...rows.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]));
     this.mark(time);

@@ -60,13 +60,14 @@ class Replay {
   plots() {
     const column = (values, width, index) => values.filter((_, i) => i % width === index);
     const plots = [
-      ["v, driven and commanded, m/s", [["old", column(this.commands, 2, 0)], ["driven", column(this.twists, 2, 0)]]],
-      ["omega, driven and commanded, rad/s", [["old", column(this.commands, 2, 1)], ["driven", column(this.twists, 2, 1)]]],
+      ["speed v, m/s:", [["plan", column(this.commands, 2, 0), "commanded"], ["driven", column(this.twists, 2, 0), "driven"]]],
+      ["turning rate omega, rad/s:",
+        [["plan", column(this.commands, 2, 1), "commanded"], ["driven", column(this.twists, 2, 1), "driven"]]],
       ["clearance, m", [["plan", this.clearance]]],
     ];
     if (this.terms) {
       const named = this.data.termNames.map((name, i) => [TERM_SHADES[i], column(this.terms, 5, i), name]);
-      plots.push(["terms of Eq. 9 of the choice", named]);
+      plots.push(["terms of Eq. 9 of the choice:", named]);
     }
     return plots;
   }
@@ -149,7 +150,7 @@ class Replay {
       reason: traced >= 0 ? this.reason(traced) : "",
       chosen: Number.isFinite(chosen[0]) ? chosen : null,
       path: plan >= 0 ? this.plans[plan].points : null, planReason: plan >= 0 ? this.plans[plan].reason : "",
-      oldPaths: this.plans.slice(0, Math.max(plan, 0)).map((one) => one.points),
+      oldPaths: olderPaths(this.plans.slice(0, Math.max(plan, 0)), time),
       explored: this.exploredAt(plan), seen: this.seenAt(tick),
       trail: this.trail, trailCount: tick + 1,
       contact: this.data.outcome === "contact" && tick === this.times.length - 1,
@@ -184,10 +185,11 @@ async function start() {
     if (now >= end) run(false);
     else requestAnimationFrame(step);
   };
-  makeLayers(() => show());
+  makeLegend(() => show());
   slider.max = end;
   for (const one of replays) one.span = { begin: 0, end };
   panels = replays.map((one) => new Panel(one, { seek }));
+  if (panels.length === 1) panels[0].hold(document.getElementById("legend"));
   slider.addEventListener("input", () => seek(Number(slider.value)));
   play.addEventListener("click", () => run(!running));
   document.addEventListener("keydown", (event) => {
@@ -200,7 +202,7 @@ async function start() {
     event.preventDefault();
     actions[event.key]();
   });
-  window.dynastar = { seek, end, time: () => now, frame: () => replays[0].frame(now) };
+  window.dynastar = { seek, end, panels: () => panels, time: () => now, frame: () => replays[0].frame(now) };
   show();
 }
 

@@ -283,6 +283,35 @@ function drawGoals(context, view, scene, palette) {
   }
 }
 
+const FADE = 10;  // s in which a path that was replaced fades away
+
+// Paths that were replaced and have not faded yet at a time (s). A path is old since the next was made.
+function olderPaths(plans, time) {
+  const alpha = (plan) => 1 - Math.min(Math.max((time - plan.time) / FADE, 0), 1);
+  return plans.map((plan) => ({ points: plan.points, alpha: alpha(plan) })).filter((one) => one.alpha > 0);
+}
+
+// Words in a box above a place (x, y), within the canvas.
+function drawCallout(view, text, [x, y], palette) {
+  const context = view.canvas.getContext("2d");
+  context.save();
+  context.setTransform(view.ratio, 0, 0, view.ratio, 0, 0);
+  context.font = "600 14px system-ui, sans-serif";
+  const width = context.measureText(text).width + 20, height = 30, gap = 14;
+  const px = view.width / 2 + (x - view.centre[0]) * view.scale;
+  const py = view.height / 2 - (y - view.centre[1]) * view.scale;
+  const left = Math.min(Math.max(px - width / 2, 4), view.width - width - 4);
+  const top = py - gap - height > 4 ? py - gap - height : py + gap;
+  context.beginPath();
+  context.roundRect(left, top, width, height, 6);
+  context.fillStyle = palette.robot;
+  context.fill();
+  context.fillStyle = palette.ground;
+  context.textBaseline = "middle";
+  context.fillText(text, left + 10, top + height / 2 + 1);
+  context.restore();
+}
+
 // layers: which parts are wanted, by name.
 function drawScene(view, scene, frame, layers) {
   if (layers.follow) view.follow(frame.pose);
@@ -299,12 +328,14 @@ function drawScene(view, scene, frame, layers) {
   if (layers.seen && frame.seen) frame.seen.draw(context);
   drawGoals(context, view, scene, palette);
   if (layers.plans) {
-    for (const path of frame.oldPaths) {
-      polyline(context, path);
+    for (const { points, alpha } of frame.oldPaths) {
+      polyline(context, points);
       context.strokeStyle = palette.old;
+      context.globalAlpha = alpha;
       context.lineWidth = view.pixels(1);
       context.stroke();
     }
+    context.globalAlpha = 1;
     if (frame.path) {
       polyline(context, frame.path);
       context.strokeStyle = palette.plan;
