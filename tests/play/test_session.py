@@ -283,6 +283,11 @@ def test_it_pauses_and_steps(field):
     assert field.scenery.world.time == pytest.approx(session.PERIOD)
 
 
+def test_a_scene_whose_robot_overlaps_a_wall_is_refused(field):
+    with pytest.raises(InputError, match="overlaps a wall"):
+        Session(replace(field.scenery.scenario, start=(0.4, 5.0, 0.0)), SCENES)
+
+
 def test_a_scene_waits_for_its_first_goal_and_shows_what_is_set_meanwhile(field):
     assert field.paused
     assert json.loads(field.journal.frame)["time"] == 0.0

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from dynastar import io
 from dynastar.errors import (
     ConfigError,
     GoalOccupied,
@@ -188,6 +189,12 @@ def test_a_mover_that_runs_into_a_waiting_robot_touches_it_at_rest():
     episode = run(scenario(movers=(mover,)), navigator=saying((0.0, {"state": "waiting"})))
     assert (episode.outcome, episode.contact) == ("contact", "resting")
     assert "while standing still" in episode.reason
+
+
+def test_a_start_that_overlaps_an_obstacle_is_refused():
+    post = np.array([[5.0, 5.0], [6.0, 5.0], [6.0, 6.0], [5.0, 6.0]])
+    with pytest.raises(StartOccupied, match="overlaps a wall or an obstacle at its start"):
+        io.run(scenario(obstacles=(post,)), navigator=Straight)
 
 
 def test_a_start_in_contact_ends_before_it_begins():

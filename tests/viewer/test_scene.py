@@ -79,7 +79,7 @@ def test_number_words_name_every_number_once(numbers: set[int]):
 def test_words(office: Episode):
     assert scene.outcome_words(measure(office)) == "arrived after 69.9 s"
     touched = replace(office, outcome="contact", contact="resting")
-    assert scene.outcome_words(measure(touched)) == "contact while at rest after 69.9 s"
+    assert scene.outcome_words(measure(touched)) == "contact while standing still after 69.9 s"
     assert scene.count_words(0, "replan") == "no replans"
     assert scene.count_words(1, "recovery", "recoveries") == "1 recovery"
     assert scene.count_words(2, "recovery", "recoveries") == "2 recoveries"

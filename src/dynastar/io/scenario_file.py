@@ -25,6 +25,7 @@ from dynastar.io.scenario_things import contains, read_mover, read_obstacle
 from dynastar.masks import SpeedScale, with_keepout, with_speed_limits
 from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot
 from dynastar.simulation.scenario import Noise, Scenario
+from dynastar.simulation.start import check_start
 
 _STRING = (  # or what is left of one that has no end
     r'"""(?:\\.|[^\\])*?(?:"""|\Z)' r"|'{3}.*?(?:'{3}|\Z)" r'|"(?:\\.|[^"\\\n])*+"?' r"|'[^'\n]*+'?"
@@ -107,9 +108,13 @@ def run(
     navigator: Callable[..., simulation.Controller] | None = None,
     trace: bool = False,
 ) -> Episode:
-    """Drives a scenario, or the one in a file, in simulation: see ``simulation.run``."""
+    """Drives a scenario, or the one in a file, in simulation: see ``simulation.run``.
+
+    Raises StartOccupied, too, for a robot that overlaps a wall or an obstacle at its start.
+    """
     if not isinstance(scenario, Scenario):
         scenario = load_scenario(scenario)
+    check_start(scenario)
     return simulation.run(scenario, progress, seed, navigator=navigator, trace=trace)
 
 

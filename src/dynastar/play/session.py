@@ -22,6 +22,7 @@ from dynastar.simulation import Scenario
 from dynastar.simulation.loop_timer import LoopTimer
 from dynastar.simulation.record import Recorder, goal_table
 from dynastar.simulation.run import effective_config
+from dynastar.simulation.start import check_start
 from dynastar.simulation.tracing import Tracer, considered
 
 PERIOD = 0.05  # s
@@ -68,6 +69,7 @@ class Session:
     def _begin(self, scenario: Scenario) -> None:
         """Begins a scene; ``_scenario`` is it as it was made, with what has been set since."""
         config = effective_config(scenario)
+        check_start(scenario)
         self._scenario, self.scenery, self.paused = scenario, Scenery(scenario), True
         self._timer, self.lasted = LoopTimer(scenario.loop, PERIOD, scenario.seed), PERIOD
         self.touched, self.halted = {"moving": 0, "resting": 0}, ""
@@ -156,7 +158,7 @@ class Session:
         words = "while moving" if how == "moving" else "while standing still"
         self._recorder.event("contact", f"contact {words}")
         if not self.scenery.part():
-            self.halted = f"contact with an obstacle at rest, {words}: reset the scene"
+            self.halted = f"contact with an obstacle {words}: reset the scene"
             self._recorder.event("halt", self.halted)
             self.journal.read(self._recorder)
 

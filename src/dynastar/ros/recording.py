@@ -20,6 +20,7 @@ from dynastar.ros.settings import NodeSettings
 from dynastar.scan import LaserScan
 from dynastar.simulation import Scenario, warm_up
 from dynastar.simulation.run import drive
+from dynastar.simulation.start import check_start
 
 KINDS = {
     **TAKES,
@@ -38,6 +39,7 @@ def run_recorded(
     The pose in the map stands in odom, whose frame is the map's. Raises DataError for a folder
     that exists and MissingPackage without rosbags.
     """
+    check_start(scenario)
     warm_up()
     with BagWriter(folder) as bag:
 

@@ -20,6 +20,7 @@ from dynastar.ros.middleware import make, message_class
 from dynastar.ros.node import FRAMES, FRAMES_FIXED, LATCHED
 from dynastar.ros.outgoing import Messages
 from dynastar.simulation import Scenario, World
+from dynastar.simulation.start import check_start
 
 ORIGIN = Pose2D(0.0, 0.0, 0.0)  # of odom in map: the simulated odometry does not drift
 TIMEOUT = 0.5  # s without a command after which the drive stops, as the robots' own do
@@ -29,6 +30,7 @@ class SimulatorNode(Node):  # type: ignore[misc]
     """Runs a scenario in real time; with the parameter publish_clock it is the clock."""
 
     def __init__(self, scenario: Scenario, **options: Any) -> None:
+        check_start(scenario)
         super().__init__("dynastar_sim", **options)
         self.period = float(self.declare_parameter("period", 0.05).value)
         self.publish_clock = bool(self.declare_parameter("publish_clock", False).value)

@@ -4,9 +4,10 @@ import math
 from collections.abc import Sequence
 from contextlib import suppress
 
-from dynastar.errors import PlanningError, ScenarioError
+from dynastar.errors import PlanningError, ScenarioError, StartOccupied
 from dynastar.geometry import Pose2D, as_point
 from dynastar.planning import plan
+from dynastar.simulation.contact import Solids
 from dynastar.simulation.scenario import Scenario
 
 
@@ -34,3 +35,16 @@ def start_pose(scenario: Scenario, start: Sequence[float | None] | None = None) 
         if len(onward):
             towards = (float(onward[0, 0]), float(onward[0, 1]))
     return Pose2D(x, y, math.atan2(towards[1] - y, towards[0] - x))
+
+
+def check_start(scenario: Scenario) -> None:
+    """Raises StartOccupied if the robot overlaps a wall or an obstacle at the scenario's start."""
+    grid = scenario.grid if scenario.world is None else scenario.world
+    pose = start_pose(scenario)
+    if not grid.contains(pose.x, pose.y):
+        return  # the navigator says so, with the map's extent
+    if Solids(grid, scenario.obstacles).gap(pose, scenario.robot.footprint) <= 0.0:
+        raise StartOccupied(
+            f"the robot overlaps a wall or an obstacle at its start ({pose.x:.2f}, {pose.y:.2f}): "
+            f"expected a free place for {scenario.robot.name}"
+        )

@@ -158,7 +158,7 @@ def name_of(episode: Episode) -> str:
 def outcome_words(metrics: Metrics) -> str:
     """Describe how the mission ended."""
     after = f" after {metrics.time:.1f} s" if metrics.time is not None else ""
-    moving = "while moving" if metrics.contacts_moving else "while at rest"
+    moving = "while moving" if metrics.contacts_moving else "while standing still"
     words = {
         "arrived": f"arrived{after}",
         "blocked": f"blocked{after}",
