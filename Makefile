@@ -69,6 +69,7 @@ docs: setup
 
 pictures: setup
 	$(BIN)/python docs/make_pictures.py
+	$(BIN)/python docs/bag_picture.py
 
 dist: setup
 	rm -rf dist

@@ -13,8 +13,10 @@ setup(
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
-        *((f"share/{NAME}/{folder}", glob(f"{folder}/*")) for folder in ("launch", "config")),
-        *((f"share/{NAME}/{folder}", glob(f"{folder}/*")) for folder in ("rviz", "foxglove")),
+        *(
+            (f"share/{NAME}/{folder}", glob(f"{folder}/*"))
+            for folder in ("launch", "config", "rviz")
+        ),
     ],
     install_requires=["setuptools", "dynastar"],
     entry_points={

@@ -1,7 +1,6 @@
 """The colcon package: its files parse, and name what exists."""
 
 import ast
-import json
 import re
 import tomllib
 from pathlib import Path
@@ -46,10 +45,8 @@ def test_launch_files_start_executables_that_exist():
         assert any(getattr(node, "name", "") == "generate_launch_description" for node in tree.body)
 
 
-def test_layouts_show_topics_that_exist():
+def test_the_layout_for_rviz_shows_topics_that_exist():
     rviz = yaml.safe_load((PACKAGE / "rviz" / "dynastar.rviz").read_text())
     manager = rviz["Visualization Manager"]
     shown = [thing["Topic"]["Value"] for thing in manager["Displays"]]
     assert set(shown) < TOPICS
-    foxglove = json.loads((PACKAGE / "foxglove" / "dynastar.json").read_text())
-    assert set(foxglove["configById"]["3D!main"]["topics"]) < TOPICS

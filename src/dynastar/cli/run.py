@@ -48,7 +48,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--bag",
         type=path,
         metavar="DIR",
-        help="record the messages of a ROS 2 robot to this new folder",
+        help="record the messages of a ROS 2 robot to this new folder; the navigator is given their "
+        "rounded numbers, so the drive can differ from one without --bag",
     )
     add_set(parser)
 
@@ -77,7 +78,11 @@ def execute(arguments: argparse.Namespace) -> int:
         from dynastar.ros.recording import run_recorded
 
         episode = run_recorded(scenario, arguments.bag, progress=True)
-        print(f"the recording is {arguments.bag}", file=sys.stderr)
+        print(
+            f"the recording is {arguments.bag}; the navigator was given its rounded numbers, so the "
+            "drive can differ from one without --bag",
+            file=sys.stderr,
+        )
     summary = metrics.measure(episode)._asdict()
     write_folder(folder, episode, summary, gif=not arguments.no_gif)
     print(f"results written to {folder}", file=sys.stderr)

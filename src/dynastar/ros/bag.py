@@ -1,6 +1,7 @@
 """Recordings: MCAP in rosbag2's form, written and read without ROS by the library rosbags."""
 
 import heapq
+import shutil
 import warnings
 from collections.abc import Iterator
 from functools import cache
@@ -17,6 +18,7 @@ from dynastar.io.paths import local_path
 from dynastar.ros.aside import AsideFolder
 from dynastar.ros.cut_bag import has_journal, read_cut
 
+LAYOUT = Path(__file__).parent / "foxglove.json"
 STORED_EVERY = 10**9  # ns after which what was written in place is on the disk
 
 
@@ -61,6 +63,7 @@ def _zero(kind: str, detail: Any) -> Any:
 class BagWriter:
     """Writes messages to a new folder; it appears under its name when it is closed, and is whole.
 
+    The folder also has a layout for Foxglove, ``foxglove.json``, which shows what the navigator considers.
     ``aside=False`` writes in place, so that what was recorded up to a crash is kept but for the last
     second. Raises DataError where there is something of that name.
     """
@@ -78,6 +81,7 @@ class BagWriter:
         version = Writer.VERSION_LATEST
         self._writer = Writer(written, version=version, storage_plugin=StoragePlugin.MCAP)
         self._writer.open()
+        shutil.copyfile(LAYOUT, written / LAYOUT.name)
         self._connections: dict[str, Any] = {}
         self._last = -1
         self._stored = -STORED_EVERY

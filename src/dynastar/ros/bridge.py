@@ -77,6 +77,7 @@ class Bridge:
         self.localization = Localization(settings.pose_source)
         self.transforms = Transforms()
         self.refused = ""  # what was refused last, and why
+        self.goals_taken = self.goals_refused = 0  # since the start
         self._refusals: dict[str, str] = {}  # by topic, why its newest message was refused
         self.fault = ""  # what else keeps it from driving, as a clock that stands still
         self._odometry_frame = ""
@@ -103,7 +104,10 @@ class Bridge:
             else:
                 self.transforms.add(message, static=topic.endswith("static"))
         except DynastarError as error:
-            self.refused = f"the goal is refused: {error}" if topic == "goal_pose" else str(error)
+            self.refused = str(error)
+            if topic == "goal_pose":
+                self.refused = f"the goal is refused: {error}"
+                self.goals_refused += 1
             self._refusals[topic] = self.refused
             return self.refused
         self._refusals.pop(topic, None)
@@ -167,12 +171,14 @@ class Bridge:
         for goal in goals:
             self.navigator.planning_map.grid.world_to_cell(goal.x, goal.y)
         self.navigator.set_goal(goals)
+        self.goals_taken += 1
 
     def follow(self, points: Sequence[Sequence[float]], heading: float | None = None) -> None:
         """Drives along a path (n, 2), metres, in place of the present goals; InputError leaves those."""
         if self.navigator is None:
             raise InputError("there is no map yet")
         self.navigator.follow(np.array(points, dtype=np.float64).reshape(-1, 2), heading)
+        self.goals_taken += 1
 
     def request(self, **wanted: Any) -> str:
         """Carries out requests by name, and returns them as JSON.
@@ -237,6 +243,21 @@ class Bridge:
         command = self.navigator.command(state, scan)
         status = self.navigator.status
         return Tick(command, status.state, trouble or status.reason, status, state)
+
+    def values(self, tick: Tick) -> dict[str, str]:
+        """What is said of a tick beside its state and reason, by name."""
+        status = Status() if tick.status is None else tick.status
+        return {
+            "v": f"{tick.command.v:.3f} m/s",
+            "omega": f"{tick.command.omega:.3f} rad/s",
+            "limited by": status.limited_by,
+            "path": status.plan_reason,
+            "goals left": str(status.goals_left),
+            "replans": str(status.replans),
+            "goals taken": str(self.goals_taken),
+            "goals refused": str(self.goals_refused),
+            "refused": self.refused,
+        }
 
     def _state(self, now: float) -> tuple[RobotState, str]:
         """The state now, and what is wrong with odometry, scan or pose: then a state that stops."""

@@ -1,8 +1,7 @@
-"""What is published besides the command: paths, local map, markers of window and tracks, diagnostics."""
+"""What is published besides the command: paths, local map, cost-to-go, markers, diagnostics."""
 
 import math
 from collections.abc import Callable
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -12,21 +11,18 @@ from dynastar.geometry import Pose2D, Twist
 from dynastar.navigator import Navigator, RobotState, Status
 from dynastar.navigator.aligned import turned_pose
 from dynastar.robot import arc
-from dynastar.ros.outgoing import Colour, Messages
+from dynastar.ros.markers import AHEAD, POINTS, Markers
+from dynastar.ros.outgoing import Messages
 
-EVERY = 0.2  # s between two pictures of the window, the tracks and the local map
-AHEAD = 1.0  # s for which a sample's arc is drawn
-POINTS = 6  # of a drawn arc
-GREY: Colour = (0.6, 0.6, 0.6, 0.5)
-GREEN = (0.0, 0.62, 0.45)
+EVERY = 0.2  # s between two pictures of the candidates, the tracks and the local map
 OK_STATES = ("idle", "following", "avoiding", "waiting", "turning", "recovering", "arrived")
 OK, WARN, ERROR = (bytes([level]) for level in range(3))  # levels of a DiagnosticStatus
-LINE_LIST, CYLINDER, DELETE_ALL = 5, 3, 3  # of a Marker
 
 PUBLISHES = {
     "plan": "nav_msgs/msg/Path",
     "local_plan": "nav_msgs/msg/Path",
     "local_map": "nav_msgs/msg/OccupancyGrid",
+    "cost_to_go": "nav_msgs/msg/OccupancyGrid",
     "markers": "visualization_msgs/msg/MarkerArray",
     "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray",
 }
@@ -45,6 +41,7 @@ class StatusPublisher:
     ) -> None:
         self._messages, self._frame, self._name = messages, frame, name
         self._publish, self._wanted = publish, wanted
+        self._markers = Markers(messages, frame)
         self.reset()
 
     def reset(self) -> None:
@@ -65,15 +62,22 @@ class StatusPublisher:
         self._published = now
         if self._wanted("local_plan"):
             self._publish("local_plan", out.path(_driven(state, status), frame, now))
+        local = navigator.sensing.local_map
+        yaw = navigator.planning_map.grid.frame.yaw
         if self._wanted("local_map"):
-            local = navigator.sensing.local_map
-            stands = navigator.planning_map.occupied_under(local)
-            values = np.where(stands, 100, np.where(local.open > 0, 0, -1)).astype(np.int8)
-            corner = turned_pose(Pose2D(*local.origin), navigator.planning_map.grid.frame.yaw)
-            cells = local.resolution, *corner
+            occupied = navigator.planning_map.occupied_under(local)
+            values = np.where(occupied, 100, np.where(local.open > 0, 0, -1)).astype(np.int8)
+            cells = local.resolution, *turned_pose(Pose2D(*local.origin), yaw)
             self._publish("local_map", out.grid(values, cells, frame, now))
+        guide = navigator.driving.guide
+        if self._wanted("cost_to_go") and guide is not None and status.choice is not None:
+            cost, x, y, side = guide.cost_to_go.value
+            corner = Pose2D(x - 0.5 * side, y - 0.5 * side, 0.0)  # of cells twice as large
+            cells = 2.0 * side, *turned_pose(corner, yaw)
+            self._publish("cost_to_go", out.grid(_percent(cost[::2, ::2]), cells, frame, now))
         if self._wanted("markers"):
-            self._publish("markers", self._window_and_tracks(status, state, now))
+            footprint = navigator.robot.footprint
+            self._publish("markers", self._markers.array(footprint, status, state, now))
 
     def say(
         self, state: str, reason: str, values: dict[str, Any], now: float, steady: float
@@ -101,51 +105,15 @@ class StatusPublisher:
         array = make("diagnostic_msgs/msg/DiagnosticArray", header=header, status=[status])
         self._publish("/diagnostics", array)
 
-    def _window_and_tracks(self, status: Status, state: RobotState, now: float) -> Any:
-        """Candidates coloured by score, refused ones grey; tracks with where they will be in 1 s."""
-        out = self._messages
-        cleared = self._marker("", 0, 0.0, now, action=DELETE_ALL)
-        points, colours = [], []
-        for line, colour in _candidates(status, state):
-            for a, b in pairwise(line):
-                points += [out.point(a.x, a.y, 0.05), out.point(b.x, b.y, 0.05)]
-                colours += 2 * [out.colour(colour)]
-        window = {"points": points, "colors": colours}
-        markers = [cleared, self._marker("window", LINE_LIST, 0.01, now, **window)]
-        for track in status.tracks:
-            for k, alpha in ((0, 0.9), (1, 0.4), (2, 0.2)):
-                x, y = float(track.x + k * track.vx), float(track.y + k * track.vy)
-                place = out.pose(Pose2D(x, y, 0.0))
-                colour = out.colour((*GREEN, alpha))
-                size = 2.0 * float(track.radius)
-                disc = {"pose": place, "color": colour, "id": len(markers)}
-                markers.append(self._marker("tracks", CYLINDER, size, now, **disc))
-        return out.make("visualization_msgs/msg/MarkerArray", markers=markers)
 
-    def _marker(self, group: str, kind: int, size: float, now: float, **fields: Any) -> Any:
-        out = self._messages
-        header = out.header(self._frame, now)
-        pose = fields.pop("pose", None) or out.pose(Pose2D(0.0, 0.0, 0.0))
-        scale = out.make("geometry_msgs/msg/Vector3", x=size, y=size, z=0.1)
-        shape = {"ns": group, "type": kind, "header": header, "pose": pose, "scale": scale}
-        return out.make("visualization_msgs/msg/Marker", **shape, **fields)
-
-
-def _candidates(status: Status, state: RobotState) -> list[tuple[list[Pose2D], Colour]]:
-    """The arc of each sample with its colour, by its rank between the worst and the best score."""
-    choice = status.choice
-    if choice is None:
-        return []
-    score = choice.score
-    good = (choice.refused == 0) & np.isfinite(score)
-    low, high = (score[good].min(), score[good].max()) if good.any() else (0.0, 1.0)
-    found = []
-    for index, (v, omega) in enumerate(choice.samples):
-        part = float((score[index] - low) / max(high - low, 1e-9)) if good[index] else 0.0
-        colour = (1.0 - part, part, 0.2, 0.9) if good[index] else GREY
-        line = [arc(state.pose, Twist(v, omega), AHEAD * k / POINTS) for k in range(POINTS + 1)]
-        found.append((line, colour))
-    return found
+def _percent(cost: npt.NDArray[np.floating]) -> npt.NDArray[np.int8]:
+    """A cost-to-go from 0, the least in the window, to 100, the largest; -1 where it is not known."""
+    known = np.isfinite(cost)
+    if not known.any():
+        return np.full(cost.shape, -1, np.int8)
+    low, high = float(cost[known].min()), float(cost[known].max())
+    part = (np.where(known, cost, low) - low) / max(high - low, 1e-9)
+    return np.where(known, np.round(100.0 * part), -1.0).astype(np.int8)
 
 
 def _driven(state: RobotState, status: Status) -> npt.NDArray[np.float64]:

@@ -124,5 +124,6 @@ class RecordingController:
         self._write("cmd_vel", out.twist(tick.command))
         if tick.status is not None:
             self._status.show(self.navigator, tick.status, tick.robot, self._now)
-        self._status.say(tick.state, tick.reason, {}, self._now, self._now)
+        values = self._bridge.values(tick)
+        self._status.say(tick.state, tick.reason, values, self._now, self._now)
         return tick.command
