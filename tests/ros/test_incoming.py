@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from dynastar.errors import InputError
-from dynastar.geometry import Pose2D
+from dynastar.geometry import Goal, Pose2D
 from dynastar.grid import GridFrame
 from dynastar.ros import incoming
 from dynastar.ros.bag import as_read, make
@@ -103,8 +103,17 @@ def test_maps_that_are_none(change, says):
         incoming.grid_of(message, "map")
 
 
+def test_a_goal_with_an_orientation_of_zeros_has_any_heading():
+    goal = make("geometry_msgs/msg/PoseStamped", header=OUT.header("map", 0.0))
+    goal.pose.position.x = 2.0
+    assert incoming.goal_of(goal, "map") == Goal(2.0, 0.0, None)
+    goal.pose = OUT.pose(Pose2D(2.0, 0.0, 0.5))
+    assert incoming.goal_of(goal, "map").heading == pytest.approx(0.5)
+
+
 def test_goals_that_are_none():
     goal = make("geometry_msgs/msg/PoseStamped", header=OUT.header("map", 0.0))
+    goal.pose.orientation.w = 0.5
     with pytest.raises(InputError, match="unit quaternion"):
         incoming.goal_of(goal, "map")
     goal.pose = OUT.pose(Pose2D(1.0, math.inf, 0.0))

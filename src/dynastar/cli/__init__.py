@@ -32,6 +32,7 @@ COMMANDS = {
     "paper": "remake the paper's tables and figures",
     "ros": "the navigator as a ROS 2 node",
     "ros-sim": "the simulator as a ROS 2 node",
+    "ros-goal": "send the ROS 2 node a goal, and say what happens",
     "replay": "drive by the scans and odometry of a recording",
     "play": "drive live in the browser: set goals, paint obstacles, add walkers",
     "warmup": "compile everything now, so that the first mission does not wait",
@@ -49,7 +50,7 @@ examples:
   dynastar play
   dynastar warmup"""
 
-ROS, TAKE_ROS = "--ros-args", ("ros", "ros-sim")
+ROS, TAKE_ROS = "--ros-args", ("ros", "ros-sim", "ros-goal")
 
 BROKEN_PIPE = 141
 

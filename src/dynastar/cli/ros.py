@@ -1,10 +1,14 @@
 """``dynastar ros``: the navigator as a ROS 2 node."""
 
 import argparse
+from pathlib import Path
 
 from dynastar import io
 from dynastar.cli.parsing import path
+from dynastar.config import choose
 from dynastar.extras import require
+from dynastar.io.examples import example_scenarios
+from dynastar.simulation import Scenario
 
 DESCRIPTION = (
     "Runs the navigator as a ROS 2 node: it takes map, scan, odom and goal_pose and "
@@ -13,12 +17,11 @@ DESCRIPTION = (
 
 EXAMPLES = """\
 examples:
-  dynastar ros-sim examples/office/office.toml
-  dynastar ros --scenario examples/office/office.toml
-  dynastar ros --scenario office.toml --ros-args -p bag:=out/bag     # records, see dynastar replay
-  dynastar ros --ros-args -p robot:=jackal -p pose_source:=amcl -r cmd_vel:=/base/cmd_vel
-  ros2 topic pub --once /goal_pose geometry_msgs/msg/PoseStamped \\
-      '{header: {frame_id: map}, pose: {position: {x: 7.2, y: 10.0}, orientation: {w: 1.0}}}'"""
+  dynastar ros-sim                                              # the office; or a scenario file
+  dynastar ros --scenario office
+  dynastar ros-goal 7.2 10
+  dynastar ros --scenario office --ros-args -p bag:=out/bag     # records, see dynastar replay
+  dynastar ros --ros-args -p robot:=jackal -p pose_source:=amcl -r cmd_vel:=/base/cmd_vel"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -26,8 +29,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--scenario",
         type=path,
-        metavar="FILE",
-        help="take robot and errors from this scenario file",
+        metavar="SCENARIO",
+        help="take robot and errors from this scenario: a file, or an example's name",
     )
 
 
@@ -35,10 +38,16 @@ def execute(arguments: argparse.Namespace) -> int:
     """Runs the node until it is interrupted."""
     from dynastar.cli.compiling import prepare
 
-    scenario = None if arguments.scenario is None else io.load_scenario(arguments.scenario)
+    scenario = None if arguments.scenario is None else load_named(arguments.scenario)
     require("ros", "ROS 2 nodes need")
     prepare()
     from dynastar.ros.main import navigate, parameters_of
 
     given = [] if scenario is None else parameters_of(scenario)
     return navigate([*given, *arguments.ros_args])
+
+
+def load_named(given: Path) -> Scenario:
+    """The scenario of a file, or of an example's name such as ``office``."""
+    named = given.suffix == "" and not given.exists()
+    return io.load_scenario(choose(str(given), example_scenarios(), "scenario") if named else given)

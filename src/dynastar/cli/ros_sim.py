@@ -1,10 +1,10 @@
 """``dynastar ros-sim``: the simulator as a ROS 2 node."""
 
 import argparse
+from pathlib import Path
 
-from dynastar import io
 from dynastar.cli.parsing import path
-from dynastar.cli.ros import EXAMPLES
+from dynastar.cli.ros import EXAMPLES, load_named
 from dynastar.extras import require
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "execute"]
@@ -17,14 +17,21 @@ DESCRIPTION = (
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the command."""
-    parser.add_argument("scenario", metavar="SCENARIO.toml", type=path)
+    parser.add_argument(
+        "scenario",
+        nargs="?",
+        metavar="SCENARIO",
+        type=path,
+        default=Path("office"),
+        help="a scenario file, or an example's name (default office)",
+    )
 
 
 def execute(arguments: argparse.Namespace) -> int:
     """Runs the node until it is interrupted."""
     from dynastar.cli.compiling import prepare
 
-    scenario = io.load_scenario(arguments.scenario)
+    scenario = load_named(arguments.scenario)
     require("ros", "ROS 2 nodes need")
     prepare()
     from dynastar.ros.main import simulate

@@ -33,11 +33,17 @@ def yaw_of(rotation: Any, what: str = "an orientation") -> float:
     return wrap_angle(math.atan2(2.0 * (x * y + w * z), w * w + x * x - y * y - z * z))
 
 
-def pose_of(pose: Any, what: str = "a pose") -> Pose2D:
-    """A geometry_msgs/Pose in the plane; InputError where it is not finite or tilted too far."""
+def position_of(pose: Any, what: str) -> tuple[float, float]:
+    """(x, y) of a geometry_msgs/Pose, metres; InputError where they are not finite."""
     x, y = float(pose.position.x), float(pose.position.y)
     if not (math.isfinite(x) and math.isfinite(y)):
         raise InputError(f"{what} has the position ({x:g}, {y:g}): expected finite numbers")
+    return x, y
+
+
+def pose_of(pose: Any, what: str = "a pose") -> Pose2D:
+    """A geometry_msgs/Pose in the plane; InputError where it is not finite or tilted too far."""
+    x, y = position_of(pose, what)
     return Pose2D(x, y, yaw_of(pose.orientation, what))
 
 
@@ -47,9 +53,16 @@ def twist_of(twist: Any) -> Twist:
 
 
 def goal_of(message: Any, frame: str) -> Goal:
-    """The goal in a PoseStamped of ``frame``; InputError for another frame or a pose that is none."""
+    """The goal in a PoseStamped of ``frame``; InputError for another frame or a pose that is none.
+
+    An orientation of four zeros means any heading.
+    """
     check_frame("a goal", message.header.frame_id, frame)
-    return Goal(*pose_of(message.pose, "its pose"))
+    pose, turn = message.pose, message.pose.orientation
+    if any((turn.x, turn.y, turn.z, turn.w)):
+        return Goal(*pose_of(pose, "its pose"))
+    x, y = position_of(pose, "its pose")
+    return Goal(x, y)
 
 
 def check_frame(what: str, given: str, expected: str) -> None:

@@ -2,6 +2,7 @@
 
 import math
 import time
+from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -16,10 +17,10 @@ from rclpy.serialization import serialize_message
 from std_srvs.srv import Trigger
 
 from dynastar.errors import DynastarError, InputError
-from dynastar.geometry import Twist
+from dynastar.geometry import Goal, Twist
 from dynastar.planning import plan
 from dynastar.ros.bag import BagWriter
-from dynastar.ros.bridge import REQUESTS, TAKES, Bridge, start_request
+from dynastar.ros.bridge import REQUESTS, TAKES, Bridge, Tick, start_request
 from dynastar.ros.incoming import goal_of
 from dynastar.ros.middleware import make, message_class
 from dynastar.ros.outgoing import Messages
@@ -51,7 +52,7 @@ class NavigatorNode(Node):  # type: ignore[misc]
         self.bridge = Bridge(settings, self.parameters.robot, self.parameters.config)
         self._out = Messages(make)
         self._bag = BagWriter(Path(settings.bag), aside=False) if settings.bag else None
-        self._ticked = -math.inf
+        self._ticked, self._state = -math.inf, ""
         self._clock_read, self._clock_moved = -math.inf, time.monotonic()
         twist = "TwistStamped" if settings.enable_stamped_cmd_vel else "Twist"
         self._kinds = {**TAKES, **PUBLISHES, "cmd_vel": f"geometry_msgs/msg/{twist}"}
@@ -103,21 +104,29 @@ class NavigatorNode(Node):  # type: ignore[misc]
     def _take(self, topic: str, message: Any) -> None:
         self._record(topic, message, self._time())
         words = self.bridge.take(topic, message)
-        if words:
+        if words and topic == "goal_pose":
+            self.get_logger().warning(words, throttle_duration_sec=0.1)
+        elif words:
             self.get_logger().warning(words, throttle_duration_sec=1.0)
         elif topic == "map":
             grid = self.bridge.grid
             assert grid is not None
             self._status.reset()
             self.get_logger().info(f"map: {grid.columns} x {grid.rows} cells, {grid.extent()}")
-        elif topic == "goal_pose" and self._actions is not None:
-            self._actions.replaced()
+        elif topic == "goal_pose":
+            self._log_goals([goal_of(message, self.parameters.settings.global_frame)])
+            if self._actions is not None:
+                self._actions.replaced()
         if topic == "scan":
             self._tick()
 
     def _request(self, **wanted: Any) -> None:
         """Carries out a request of a service, an action or a parameter, and records it."""
         self._note_request(self.bridge.request(**wanted))
+        if "goals" in wanted:
+            self._log_goals(wanted["goals"])
+        elif "follow" in wanted:
+            self.get_logger().info(f"path of {len(wanted['follow'][0])} poses")
 
     def _note_request(self, words: str) -> None:
         if self._bag is not None:
@@ -161,18 +170,32 @@ class NavigatorNode(Node):  # type: ignore[misc]
         self._check_clock(now)
         tick = self.bridge.tick(now)
         self._send(tick.command, now)
-        values = {"v": f"{tick.command.v:.3f} m/s", "omega": f"{tick.command.omega:.3f} rad/s"}
         if tick.status is not None and self.bridge.navigator is not None:
             self._status.show(self.bridge.navigator, tick.status, tick.robot, now)
-            values |= {
-                "limited by": tick.status.limited_by,
-                "goals left": str(tick.status.goals_left),
-                "replans": str(tick.status.replans),
-            }
-        values["refused"] = self.bridge.refused
+        values = self.bridge.values(tick)
         self._status.say(tick.state, tick.reason, values, now, time.monotonic())
+        self._log(tick)
         if self._actions is not None:
             self._actions.update(tick, now)
+
+    def _log(self, tick: Tick) -> None:
+        """Log how a mission ends, and when and why sensor data are lost."""
+        before, self._state = self._state, tick.state
+        if tick.state == before:
+            return
+        if tick.state == "arrived":
+            self.get_logger().info(f"arrived: {tick.reason}")
+        elif tick.state in ("blocked", "sensor_lost"):
+            self.get_logger().warning(f"{tick.state}: {tick.reason}")
+        elif before == "sensor_lost":
+            self.get_logger().info(f"sensor data are back: {tick.state}, {tick.reason}")
+
+    def _log_goals(self, goals: Sequence[Goal]) -> None:
+        words = ", ".join(
+            f"({x:.2f}, {y:.2f})" + ("" if heading is None else f" heading {heading:.2f} rad")
+            for x, y, heading in goals
+        )
+        self.get_logger().info(f"{'goal' if len(goals) == 1 else 'goals'} {words}")
 
     def _send(self, command: Twist, now: float) -> None:
         settings = self.parameters.settings

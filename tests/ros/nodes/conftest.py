@@ -138,10 +138,10 @@ class Processes:
     def __init__(self) -> None:
         self.running: list[subprocess.Popen] = []
 
-    def start(self, *words: object) -> subprocess.Popen:
+    def start(self, *words: object, **options) -> subprocess.Popen:
         env = {k: v for k, v in os.environ.items() if k != "_ROS_WHEELS_BOOTSTRAP_COMPLETE"}
         command = [sys.executable, "-m", "dynastar", *map(str, words)]
-        process = subprocess.Popen(command, env=env)
+        process = subprocess.Popen(command, env=env, **options)
         self.running.append(process)
         return process
 
