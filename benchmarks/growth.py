@@ -206,7 +206,7 @@ def main() -> None:
         ("Search of a prepared grid", "side of the map, cells", searches()),
         ("Dynamic window", "samples", window()),
         ("Scan to distance field, local map of 10 m at 5 cm", "beams", sensing()),
-        ("With others about, 720 beams", "movers tracked", company()),
+        ("With moving obstacles, 720 beams", "obstacles tracked", company()),
     ]
     for title, unit, series in panels:
         ticks = [x for x, _ in next(iter(series.values()))]

@@ -2,8 +2,8 @@
 
 python benchmarks/how_it_drives.py [--out docs/media/how-it-drives.png]
 
-The tick is the one with the most samples both admitted and refused, and of several that with the
-nearest walker.
+The tick is the one with the most samples both admitted and refused while the robot drives forward, and
+of several that with the nearest walker.
 """
 
 import argparse
@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
@@ -28,7 +28,9 @@ OFFICE = ROOT / "examples" / "office" / "office.toml"
 NAMES = ("continues", "stops", "turns back")
 COLOURS = ("tab:blue", "tab:orange", "tab:red")
 NEAR = 0.4  # m
-REASONS = ("", "tab:brown", "tab:red", "tab:purple")  # by code of refusal
+FORWARD = 0.2  # m/s, the least speed at which the chosen sample can be seen
+REASONS = ("", "0.6", "tab:red", "tab:purple")  # colours by code of refusal
+SCORES = LinearSegmentedColormap.from_list("scores", ["#d55e00", "#0072b2"])  # as on the pages
 
 
 class Watched(Navigator):
@@ -55,6 +57,8 @@ class Watched(Navigator):
         choice = self.status.choice
         walkers = [(t.x, t.y) for t in self.status.tracks if t.state == "confirmed"]
         if choice is None or choice.command is None or not walkers or not self._on_path():
+            return twist
+        if twist.v < FORWARD:
             return twist
         nearest = min(math.dist(walker, state.pose[:2]) for walker in walkers)
         refused = int((choice.refused > 0).sum())
@@ -130,17 +134,21 @@ def draw_choice(axes: Axes, scene: Any, pose: Any, state: Any, choice: Any, robo
         if code == 0:
             share = (choice.score[i] - low) / max(high - low, 1e-9)
             known = np.isfinite(choice.score[i])
-            shade = colormaps["summer_r"](min(max(share, 0.0), 1.0)) if known else "0.6"
-            style = {"color": shade, "lw": 1.0 if known else 0.6}
+            shade = SCORES(min(max(share, 0.0), 1.0)) if known else "tab:pink"
+            style = {"color": shade, "lw": 1.2 if known else 0.6}
+        if i == order[-1]:
+            style = {"color": SCORES(1.0), "lw": 2.5, "zorder": 5}
         points = held(pose, state.twist, choice.samples[i], robot.limits)
         axes.plot(*np.array(points).T, **style)
-    axes.plot([], [], color=REASONS[1], label="refused: no certified stop")
-    axes.plot([], [], color=REASONS[2], label="refused: a moving obstacle")
-    axes.plot([], [], color=REASONS[3], label="refused: unseen space")
-    axes.plot([], [], color="0.6", label="admissible, touches an obstacle")
-    axes.plot([], [], color=colormaps["summer_r"](0.9), label="admissible, by its score")
+    words = "no certified stop", "a moving obstacle", "unseen space"
+    for code in sorted(set(choice.refused[choice.refused > 0].tolist())):
+        axes.plot([], [], color=REASONS[code], label=f"refused: {words[code - 1]}")
+    if not np.isfinite(choice.score[choice.refused == 0]).all():
+        axes.plot([], [], color="tab:pink", label="admissible, touches an obstacle")
+    axes.plot([], [], color=SCORES(0.0), label="admissible, lowest score")
+    axes.plot([], [], color=SCORES(1.0), lw=2.5, label="admissible, highest score")
     draw_obstacles(axes, scene)
-    axes.set_title("Refused and scored: samples, held for 1.5 s", fontsize=10)
+    axes.set_title("Candidates, held for 1.5 s: refused and scored", fontsize=10)
 
 
 def main() -> None:
@@ -162,12 +170,12 @@ def main() -> None:
     for axes, half in ((left, 4.0), (right, 1.3)):
         axes.imshow(occupied, origin="lower", extent=extent, cmap="gray", vmin=0, vmax=2)
         size = robot.footprint.inscribed
-        axes.add_patch(Circle((pose.x, pose.y), size, fill=False, color="r", lw=1.5))
+        axes.add_patch(Circle((pose.x, pose.y), size, fill=False, color="#4a1460", lw=1.8))
         ahead = pose.x + size * math.cos(pose.theta), pose.y + size * math.sin(pose.theta)
-        axes.plot([pose.x, ahead[0]], [pose.y, ahead[1]], "r", lw=1.5)
+        axes.plot([pose.x, ahead[0]], [pose.y, ahead[1]], color="#4a1460", lw=1.8)
         axes.set(xlim=(pose.x - half, pose.x + half), ylim=(pose.y - half, pose.y + half))
         axes.set(xlabel="x (m)", ylabel="y (m)", aspect="equal")
-        axes.legend(fontsize=7, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3)
+        axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3)
     figure.savefig(arguments.out, dpi=90, bbox_inches="tight")
     counts = {name: int(count) for name, count in choice.refusals.items()}
     print(f"{state.stamp:.1f} s: {arguments.out}, refused: {counts}")

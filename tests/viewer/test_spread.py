@@ -67,6 +67,14 @@ def test_columns_have_each_arms_number():
     assert names == ["default", "paper", "none"]
 
 
+def test_intervals_are_lines_through_the_dots():
+    values = {"default": 75.0, "paper": 93.0}
+    column = Column("arrived, %", values, intervals={"default": (70.0, 80.0), "paper": None})
+    (axes,) = draw_columns([column]).axes
+    lines = [line for line in axes.lines if len(line.get_xdata()) == 2]
+    assert [(*line.get_xdata(), *line.get_ydata()) for line in lines] == [(70.0, 80.0, 0, 0)]
+
+
 def test_the_words_of_narrow_columns_do_not_overlap():
     column = Column("people\ntime / default's", {"a name of an arm, a long one": 0.9, "b": 1.7})
     share = Column("people\narrived, %", {"a name of an arm, a long one": 6.0, "b": 80.0})

@@ -144,13 +144,18 @@ def _columns(found: Mapping[str, Mapping[str, Any]]) -> list[Column]:
     """Data of the ablation's picture: for each suite, the arms in the order of the first suite."""
     order = ablation.by_effect(next(iter(found.values())))
     percent = (0.0, 100.0)
-    shown: dict[str, tuple[Callable[[Mapping[str, Any]], float | None], Any]] = {
-        "arrived, %": (lambda of: 100.0 * of["arrived"] / of["missions"], percent),
-        "touched, %": (
-            lambda of: 100.0 * (of["contacts_moving"] + of["contacts_resting"]) / of["missions"],
+    shown: dict[str, tuple[Callable[[Mapping[str, Any]], float | None], str, Any]] = {
+        "arrived, %": (
+            lambda of: 100.0 * of["arrived"] / of["missions"],
+            "arrived_interval",
             percent,
         ),
-        "time / default's": (lambda of: of["time_ratio"], None),
+        "contact, %": (
+            lambda of: 100.0 * (of["contacts_moving"] + of["contacts_resting"]) / of["missions"],
+            "touched_interval",
+            percent,
+        ),
+        "time / default's": (lambda of: of["time_ratio"], "time_ratio_interval", None),
     }
     return [
         Column(
@@ -158,10 +163,20 @@ def _columns(found: Mapping[str, Mapping[str, Any]]) -> list[Column]:
             {arm: of(arms[arm]) if arm in arms else None for arm in order},
             ".0f" if range_ else ".2f",
             range=range_,
+            intervals={
+                arm: _scaled(arms[arm].get(interval), 100.0 if range_ else 1.0)
+                for arm in order
+                if arm in arms
+            },
         )
         for suite, arms in found.items()
-        for label, (of, range_) in shown.items()
+        for label, (of, interval, range_) in shown.items()
     ]
+
+
+def _scaled(interval: Sequence[float] | None, factor: float) -> tuple[float, float] | None:
+    """An interval in another unit; None where there is none."""
+    return None if interval is None else (factor * interval[0], factor * interval[1])
 
 
 def report_presets(asked: Asked) -> Report:

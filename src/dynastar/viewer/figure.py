@@ -139,7 +139,8 @@ def draw_episode(
     figure, axes = _sheet()
     entries, driven = draw_mission(episode, axes, view)
     words = (f"{scene.name_of(episode)}: {scene.outcome_words(metrics)}", _detail(metrics))
-    _lay_out(figure, axes, view, width, words, entries, driven)
+    moved = bool(np.any(episode.trajectory.twists[:, 0]))
+    _lay_out(figure, axes, view, width, words, entries, driven if moved else None)
     return _saved(figure, path, dpi)
 
 

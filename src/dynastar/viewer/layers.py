@@ -195,7 +195,9 @@ def show_driven(axes: Axes, episode: Episode) -> tuple[LineCollection, list[Arti
     )
     line.set_array(0.5 * (speed[:-1] + speed[1:]))
     axes.add_collection(line)
-    if len(points) == 0:
+    if fastest == 0.0:
+        for pose in driven.poses[:1]:
+            show_robot(axes, episode, pose)
         return line, []
     seconds = driven.times - driven.times[0]
     step = next((s for s in NICE_SECONDS if seconds[-1] / s <= FOOTPRINTS), NICE_SECONDS[-1])
@@ -235,11 +237,12 @@ def show_contact(axes: Axes, episode: Episode) -> list[Artist]:
     """A red cross where the robot was when it touched something."""
     if not episode.contact or len(episode.trajectory.poses) == 0:
         return []
+    how = "while moving" if episode.contact == "moving" else "while standing still"
     cross = Line2D([], [], linestyle="none", marker="x", color=palette.CONTACT)
     x, y = episode.trajectory.poses[-1, :2]
     axes.plot(x, y, "x", color="white", markersize=12, markeredgewidth=4.5, zorder=10)
     axes.plot(x, y, "x", color=palette.CONTACT, markersize=10, markeredgewidth=2.6, zorder=10)
-    cross.set(markersize=7, markeredgewidth=2.2, label=literal(f"contact ({episode.contact})"))
+    cross.set(markersize=7, markeredgewidth=2.2, label=literal(f"contact {how}"))
     return [cross]
 
 

@@ -44,7 +44,8 @@ class Spread(NamedTuple):
 class Column(NamedTuple):
     """A measure with one number an arm, None where it has none; ``format`` is of the numbers.
 
-    Its axis has the ``range`` that is given, else that of the numbers.
+    Its axis has the ``range`` that is given, else that of the numbers. ``intervals`` are (low, high)
+    by arm, drawn as lines.
     """
 
     label: str
@@ -52,6 +53,7 @@ class Column(NamedTuple):
     format: str = ".1f"
     log: bool = False
     range: tuple[float, float] | None = None
+    intervals: Mapping[str, tuple[float, float] | None] = {}
 
 
 def draw_spreads(spreads: Sequence[Spread], width: float | None = None) -> Figure:
@@ -112,6 +114,7 @@ def show_spread(axes: Axes, spread: Spread, groups: Sequence[str]) -> None:
 def draw_columns(columns: Sequence[Column], width: float = PAGE, best: str | None = None) -> Figure:
     """Arms down the side, a measure a column, a dot and its figure for each (an ablation).
 
+    A line through a dot is its interval.
     The arm ``best`` stands out, and a line through its value goes down each column.
     """
     arms = list(columns[0].values)
@@ -123,7 +126,10 @@ def draw_columns(columns: Sequence[Column], width: float = PAGE, best: str | Non
                 _figure_beside(axes, row, "–")
                 continue
             colour = palette.DRIVEN if arm == best else palette.FIRST_PATH
-            axes.plot(value, row, "o", color=colour, markersize=4.2, zorder=4, clip_on=False)
+            between = column.intervals.get(arm)
+            if between is not None:
+                axes.plot(between, (row, row), color=colour, linewidth=1.5, alpha=0.6, zorder=3)
+            axes.plot(value, row, "o", color=colour, markersize=2.8, zorder=4, clip_on=False)
             _figure_beside(axes, row, format(value, column.format), colour)
         own = column.values.get(best) if best is not None else None
         if own is not None:
