@@ -3,9 +3,8 @@
     dynastar bench all --quick --data DIR --out out/bench
     python benchmarks/scoreboard_page.py out/bench --data DIR
 
-takes the tables out/bench/all.txt, and failures by kind, what limited the speed and the other
-controllers from out/bench/all.json. A picture of each kind of failure is drawn by
-`dynastar bench SUITE --replay N`.
+takes the scoreboard, the failures by kind, what limited the speed and the other controllers from
+out/bench/all.json. A picture of each kind of failure is drawn by `dynastar bench SUITE --replay N`.
 """
 
 import argparse
@@ -19,11 +18,13 @@ from typing import Any
 
 from PIL import Image
 
+from dynastar.bench.scoreboard_tables import MOST_GROUPS
+
 DOCS = Path(__file__).parent.parent / "docs"
 PAGE, PICTURES = DOCS / "benchmarks.md", DOCS / "media" / "benchmarks"
 KINDS = {
     "moving": "contact while moving",
-    "resting": "contact while standing",
+    "resting": "contact while standing still",
     "no progress": 'says "gave up: no progress"',
     "no way": "says that no way is left or leads to the goal",
     "timeout": "the time is up",
@@ -75,6 +76,36 @@ def failures_table(found: dict[str, dict[str, list[int]]]) -> str:
     return "\n".join(lines)
 
 
+def scoreboard(suites: dict[str, Any]) -> str:
+    """A line for each suite and group, in columns that fit the site's width."""
+    titles = ("", "succeeded", "95 %", "contacts", "timeouts", "score", "time ratio", "tick, ms")
+    lines = [f"| {' | '.join(titles)} |", f"|:--{'|--:' * (len(titles) - 1)}|"]
+    for name, suite in suites.items():
+        lines.append(counts(f"`{name}`", suite))
+        if 1 < len(suite["groups"]) <= MOST_GROUPS:
+            lines += [
+                counts(f"*{group.replace('_', ' ')}*", of) for group, of in suite["groups"].items()
+            ]
+    return "\n".join(lines)
+
+
+def counts(name: str, of: dict[str, Any]) -> str:
+    """A line of the scoreboard."""
+    low, high = of["succeeded_interval"] or (0.0, 1.0)
+    ticks = of["tick_ms_median"], of["tick_ms_p99"]
+    cells = (
+        name,
+        f"{of['succeeded']} of {of['missions']}",
+        f"{100 * low:.0f} to {100 * high:.0f}",
+        f"{of['contacts_moving']}, {of['contacts_resting']}",
+        f"{of['timeouts']}",
+        "" if of["score"] is None else f"{of['score']:.3f}",
+        "" if of["time_ratio"] is None else f"{of['time_ratio']:.2f}",
+        "" if None in ticks else f"{ticks[0]:.1f}, {ticks[1]:.1f}",
+    )
+    return f"| {' | '.join(cells)} |"
+
+
 def limits_table(suites: dict[str, Any]) -> str:
     """What limited the speed, as shares of the time driven, by suite."""
     of = {name: suite.get("limited") or {} for name, suite in suites.items()}
@@ -87,7 +118,8 @@ def limits_table(suites: dict[str, Any]) -> str:
         if times[name] > 0.0
     }
     names = sorted({what for share in shares.values() for what in share if share[what] >= 0.5})
-    lines = [f"| suite | {' | '.join(names)} |", f"|---{'|---' * len(names)}|"]
+    titles = [name.removeprefix("state: ").replace("_", " ") for name in names]
+    lines = [f"| suite | {' | '.join(titles)} |", f"|---{'|---' * len(names)}|"]
     for suite, share in shares.items():
         if share:
             cells = " | ".join(f"{share.get(name, 0.0):.1f}" for name in names)
@@ -147,15 +179,14 @@ def pictures(found: dict[str, dict[str, list[int]]], data: Path) -> Iterable[str
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=Path, help="where all.txt and all.json are")
+    parser.add_argument("folder", type=Path, help="where all.json is")
     parser.add_argument("--data", type=Path, required=True, help="the public data sets")
     arguments = parser.parse_args()
-    table = (arguments.folder / "all.txt").read_text(encoding="utf-8")
     everything = json.loads((arguments.folder / "all.json").read_text(encoding="utf-8"))
     suites = everything["suites"]
     found = failures(suites)
     page = PAGE.read_text(encoding="utf-8")
-    page = filled(page, "scoreboard", f"```text\n{table.strip()}\n```")
+    page = filled(page, "scoreboard", scoreboard(suites))
     page = filled(page, "failures", failures_table(found))
     page = filled(page, "limits", limits_table(suites))
     page = filled(page, "controllers", controllers_table(everything))

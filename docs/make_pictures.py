@@ -43,7 +43,7 @@ def replay(page: Page, report: Path) -> None:
     page.goto(report.as_uri())
     page.wait_for_function("window.dynastar")
     page.evaluate(f"dynastar.seek({REPLAY_AT})")
-    page.locator("label", has_text="follow the robot").click()
+    page.locator("#legend input[name=follow]").check()
     page.evaluate("scrollTo(0, 0)")
     page.wait_for_timeout(500)
     page.screenshot(path=MEDIA / "replay.png")
@@ -56,7 +56,8 @@ def playground(page: Page) -> None:
     try:
         assert server.stdout is not None
         page.goto(server.stdout.readline().strip())
-        page.wait_for_timeout(1000.0 * PLAY_AT)
+        page.locator("#pause").click()  # the scene waits to be started
+        page.wait_for_function(f"dynastar.frame().time > {PLAY_AT}")
         page.screenshot(path=MEDIA / "play.png")
     finally:
         server.send_signal(signal.SIGINT)

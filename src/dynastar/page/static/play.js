@@ -23,7 +23,7 @@ class Connection {
 }
 
 // A slider's value, with decimals only where its steps have them.
-const shownValue = (input) => Number(input.value).toFixed(Number(input.step) % 1 ? 2 : 0);
+const shownValue = (value, step) => Number(value).toFixed(Number(step) % 1 ? 2 : 0);
 
 class Page {
   constructor() {
@@ -114,14 +114,14 @@ class Page {
     for (const { name, value } of sliders) {
       const input = inputs.get(name);
       if (document.activeElement !== input) input.value = value;
-      input.nextElementSibling.textContent = shownValue(input);
+      input.nextElementSibling.textContent = shownValue(value, input.step);
     }
   }
 
   slider({ name, value, low, high, step, doc }) {
     const input = element("input", { type: "range", name, min: low, max: high, step, value });
-    const shown = element("output", {}, shownValue(input));
-    input.addEventListener("input", () => { shown.textContent = shownValue(input); });
+    const shown = element("output", {}, shownValue(value, step));
+    input.addEventListener("input", () => { shown.textContent = shownValue(input.value, step); });
     input.addEventListener("change", () => this.send("set", { name, value: Number(input.value) }));
     return element("label", { title: name }, doc, input, shown);
   }
