@@ -131,6 +131,15 @@ class Footprint:
         return Footprint(_readonly(points), circumscribed, float(inside.min()))
 
     @property
+    def half_width(self) -> float:
+        """Half the width (m) of the narrowest way through which the footprint can be moved."""
+        if self.is_disc:
+            return self.circumscribed
+        edges = np.roll(self.vertices, -1, axis=0) - self.vertices
+        normals = edges[:, ::-1] * (-1.0, 1.0) / np.hypot(*edges.T)[:, None]
+        return 0.5 * float(np.ptp(self.vertices @ normals.T, axis=0).min())
+
+    @property
     def discs(self) -> npt.NDArray[np.float64]:
         """Discs (k, 3) of centre x, y and radius, metres, that together cover a polygon; (0, 3) of a disc.
 

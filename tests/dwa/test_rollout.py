@@ -8,10 +8,9 @@ from hypothesis import strategies as st
 
 from dynastar import robot as drive
 from dynastar.dwa import DwaConfig
-from dynastar.dwa.clearance import least_clearance
+from dynastar.dwa.clearance import ROUNDING, clearance_slack, least_clearance
 from dynastar.dwa.motion import Pose, state_at
 from dynastar.dwa.rollout import (
-    APPROACH,
     RIM,
     ROW,
     follow,
@@ -62,6 +61,7 @@ def slow_roll_out(scene, rules, start, manoeuvre):
     pose = Pose2D(at.x, at.y, math.atan2(at.sin, at.cos))
     twist, gap = Twist(start.state.v, start.state.omega), start.gap
     held = max(1, round(manoeuvre.hold / schedule.period))
+    solid = scene.closed._replace(distance=scene.distance_to_obstacle)
     rows, rests, inside = [], False, True
     for i, duration in enumerate(schedule.duration):
         wanted = manoeuvre.v, manoeuvre.omega
@@ -80,7 +80,8 @@ def slow_roll_out(scene, rules, start, manoeuvre):
             at = Pose(pose.x, pose.y, math.cos(pose.theta), math.sin(pose.theta))
             inside = all(RIM * 2 * CELL <= c <= 8.0 - RIM * 2 * CELL for c in pose[:2])
             gap = least_clearance(scene.distance_to_obstacle, rules.body, at) - scene.margin
-            if inside and gap < min(0.0, start.gap) - APPROACH:
+            slack = clearance_slack(solid, rules.body, scene.margin_to_closed, start.state.pose, at)
+            if inside and slack < -ROUNDING:
                 if i < schedule.held:
                     return False, rows
                 rests = True
@@ -131,7 +132,7 @@ def test_every_row_keeps_the_limits_of_the_robot(seed, name):
         assert driven <= max(abs(row["v"]), abs(before[2])) * duration + 1e-9
         before = row["x"], row["y"], row["v"]
     assert (np.diff(rows["on_map"].astype(int)) <= 0).all()  # no return onto the map
-    assert (rows["gap"] >= min(0.0, start.gap) - APPROACH - LIMITS.v_max * 0.2 - 1e-9).all()
+    assert (rows["gap"] >= min(0.0, start.gap) - LIMITS.v_max * 0.2 - CELL).all()
 
 
 def test_contact_while_the_sample_is_held_ends_a_roll_out():
@@ -152,7 +153,7 @@ def test_rows_after_a_contact_of_the_tail_and_off_the_map_repeat_the_last_pose()
     state, reverse = state_at(2.8, 4.0, 0.0, 0.0, 0.0), Manoeuvre(0.0, 0.0, 0.5, BACK)
     clear, rows, _ = rolled(scene, rules, state, reverse)
     assert clear
-    blocked = int(np.argmax(rows["gap"] < -APPROACH))
+    blocked = int(np.argmax(rows["gap"] < 0.0))
     assert 0 < blocked < len(rows) - 2
     assert (pose_columns(rows)[blocked:] == pose_columns(rows)[blocked]).all()
     assert rows["on_map"].all()

@@ -3,13 +3,12 @@
 import math
 
 from dynastar.compiled import inner
-from dynastar.dwa.clearance import body_distance, clearance_slack, least_clearance
+from dynastar.dwa.clearance import ROUNDING, body_distance, clearance_slack, least_clearance
 from dynastar.dwa.motion import State, driven, moved, stopping_time
 
 ADMISSIBLE, NO_STOP, MOVING, HIDDEN = range(4)
 CHECK_PERIOD = 0.1  # s between two checks for moving obstacles during a stop
 FAR_ENOUGH = 0.2  # m up to which a clearance is looked at exactly
-ROUNDING = 1e-6  # m of clearance that rounding may take
 NEARER = 1e-3  # m by which a gap has to shrink to count
 
 

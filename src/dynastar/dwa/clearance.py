@@ -12,6 +12,7 @@ from dynastar.field import Field, bilinear, is_inside
 
 HALF_DIAGONAL = 1.0 / math.sqrt(2.0)  # of a cell
 BEHIND = 3.5  # cells, besides the margin, behind which a closed cell is deep inside
+ROUNDING = 1e-6  # m of clearance that rounding may take
 EXACT_WITHIN = 0.3  # m between obstacle and footprint, beyond which its circle stands for it
 
 
@@ -176,7 +177,7 @@ def slack_to(closed, all_of_it, body, margin, start, pose, enough):
             inside |= near <= 0.0
             allowed = min(margin, body_box_distance(body, start, box))
             least = min(least, near - allowed)
-            if least < -1e-6:
+            if least < -ROUNDING:
                 return least, inside
     return least, inside
 
@@ -195,7 +196,7 @@ def clearance_slack(closed, body, margin, start, pose, enough=0.0):
     if distance - body.circumscribed - a - margin >= enough:
         return distance - body.circumscribed - a - margin
     least, inside = slack_to(closed, False, body, margin, start, pose, enough)
-    if least >= -1e-6 and (inside or distance <= 0.0):
+    if least >= -ROUNDING and (inside or distance <= 0.0):
         least, inside = slack_to(closed, True, body, margin, start, pose, enough)
     return least
 

@@ -11,14 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.compiled import inner
-from dynastar.dwa.clearance import least_clearance
+from dynastar.dwa.clearance import ROUNDING, Closed, clearance_slack, least_clearance
 from dynastar.dwa.motion import State, driven
 from dynastar.dwa.scene import BACK, FOLLOW
 from dynastar.guidance.cost_to_go import turn_to_descent, value_at
 
-APPROACH = (
-    0.02  # m that a roll-out inside the margin may come nearer to an obstacle than the robot is
-)
 RIM = 2.0  # cells of the cost-to-go at its border that count as outside of it
 STRIDE = 2  # steps to a row after the sample is no longer held
 STEER_GAIN = 3.0  # 1/s, turning rate over the angle to the descent
@@ -118,7 +115,6 @@ def roll_out(scene, rules, start, manoeuvre, rows):
     schedule, limits = rules.schedule, rules.limits
     obstacles, cost_to_go = scene.distance_to_obstacle, scene.cost_to_go
     state, gap = start.state, start.gap
-    need = min(0.0, gap) - APPROACH
     held = max(1, round(manoeuvre.hold / schedule.period))
     on_map, blocked, k = True, False, 0
     for i in range(len(rows)):
@@ -130,13 +126,22 @@ def roll_out(scene, rules, start, manoeuvre, rows):
             state = driven(state, v, omega, limits, schedule.duration[i])
             on_map = is_on_map(cost_to_go.value, state.pose.x, state.pose.y)
             gap = least_clearance(obstacles, rules.body, state.pose) - scene.margin
-            if gap < need and on_map:
+            if on_map and gap < obstacles.resolution and touches(scene, rules, start, state.pose):
                 if i < schedule.held:
                     return False
                 blocked = True
         k = schedule.step[i]
         write(rows[i], state, gap, on_map)
     return True
+
+
+@inner
+def touches(scene, rules, start, pose):
+    """Whether a footprint at ``pose`` is nearer to an obstacle than a certified stop may come."""
+    closed = scene.closed
+    obstacles = Closed(scene.distance_to_obstacle, closed.occupied, closed.hits, closed.depth)
+    at_start, margin = start.state.pose, scene.margin_to_closed
+    return clearance_slack(obstacles, rules.body, margin, at_start, pose) < -ROUNDING
 
 
 @inner

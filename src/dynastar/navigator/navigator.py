@@ -29,7 +29,7 @@ from dynastar.robot import Robot
 from dynastar.scan import LaserScan, as_scans
 
 TRIAL = Twist(0.1, 0.3)  # speeds up to which the robot tries whether a lidar is really frozen
-FINE = 8  # cells to the inscribed radius, from which on cells are not halved
+FINE = 8  # cells to half the robot's width, from which on cells are not halved
 
 
 class Navigator:
@@ -50,7 +50,7 @@ class Navigator:
         planner: Planner | None = None,
     ) -> None:
         robot = as_robot(grid, robot, config)
-        config = fitted(config, robot.footprint.inscribed)
+        config = fitted(config, robot.footprint.half_width)
         self.robot, self.config, self._grid = robot, config, grid
         planning_map = PlanningMap(grid, config.resolution, config.unknown)
         self.sensing = Sensing(robot, config, planning_map)
@@ -141,7 +141,7 @@ class Navigator:
     def _refine(self) -> None:
         """Use cells half as wide, if these are wide for the robot: sensed cells close narrow ways."""
         resolution = self.planning_map.grid.resolution
-        if resolution > self.robot.footprint.inscribed / FINE:
+        if resolution > self.robot.footprint.half_width / FINE:
             self._use(self._grid, self.config._replace(resolution=0.5 * resolution))
 
     def forget(self) -> None:
