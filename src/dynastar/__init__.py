@@ -19,6 +19,8 @@ _WHERE = {
     "Path": "path",
     "plan": "planning",
     "Navigator": "navigator",
+    "Guard": "navigator",
+    "Guarded": "navigator",
     "NavigatorConfig": "navigator",
     "RobotState": "navigator",
     "Status": "navigator",
@@ -64,6 +66,8 @@ if TYPE_CHECKING:  # what _WHERE has, for type checkers
     from dynastar.io import run as run
     from dynastar.io import save_episode as save_episode
     from dynastar.io import save_map as save_map
+    from dynastar.navigator import Guard as Guard
+    from dynastar.navigator import Guarded as Guarded
     from dynastar.navigator import Navigator as Navigator
     from dynastar.navigator import NavigatorConfig as NavigatorConfig
     from dynastar.navigator import RobotState as RobotState

@@ -287,6 +287,16 @@ def arc(pose: Pose2D, twist: Twist, duration: float) -> Pose2D:
     )
 
 
+def poses_along(
+    pose: Pose2D, twist: Twist, durations: npt.NDArray[np.float64]
+) -> npt.NDArray[np.float64]:
+    """Poses (n, 3) after each of ``durations`` (n,) seconds at a constant ``twist``, as ``arc``."""
+    half = 0.5 * twist.omega * durations
+    chord = twist.v * durations * np.sinc(half / math.pi)
+    x, y = pose.x + chord * np.cos(pose.theta + half), pose.y + chord * np.sin(pose.theta + half)
+    return np.column_stack([x, y, pose.theta + 2.0 * half])
+
+
 def stopping_time(twist: Twist, limits: Limits) -> float:
     """Seconds until both speeds are zero when they ramp down in proportion (so along one arc)."""
     return max(abs(twist.v) / limits.v_brake, abs(twist.omega) / limits.omega_brake)

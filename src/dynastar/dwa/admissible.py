@@ -1,10 +1,13 @@
-"""Which commands are admissible: those with a certified stop, the general form of Eq. 7."""
+"""Which commands are admissible: those with a certified stop, the general form of Eq. 7.
+
+A ``scene`` is a Scene, or only the Surroundings.
+"""
 
 import math
 
-from dynastar.compiled import inner
+from dynastar.compiled import inner, njit
 from dynastar.dwa.clearance import ROUNDING, body_distance, clearance_slack, least_clearance
-from dynastar.dwa.motion import State, driven, moved, stopping_time
+from dynastar.dwa.motion import State, driven, moved, state_of, stopping_time
 
 ADMISSIBLE, NO_STOP, MOVING, HIDDEN = range(4)
 CHECK_PERIOD = 0.1  # s between two checks for moving obstacles during a stop
@@ -30,6 +33,26 @@ def keeps_clear(closed, body, margin, start, pose, arc):
         left = (1.0 - fraction) * sweep
         slack = clearance_slack(closed, body, margin, start, at, min(left, FAR_ENOUGH))
     return slack >= -ROUNDING
+
+
+@inner
+def refusal(scene, rules, stops_from, command):
+    """ADMISSIBLE, or why a command (v, omega) is not; MOVING where it does not rest in time.
+
+    The last of ``stops_from`` is the state in which the command is expected to begin to act.
+    """
+    for i in range(len(stops_from)):
+        begin = stops_from[i]
+        code = certified_stop(scene, rules, state_of(begin), command, begin.hold)
+        if code != ADMISSIBLE:
+            return code
+    return rests_in_time(scene, rules, state_of(stops_from[-1]), command)
+
+
+@njit(cache=True)
+def is_admissible(surroundings, rules, stops_from, command):
+    """Whether a command (v, omega) from outside the search is admissible."""
+    return refusal(surroundings, rules, stops_from, command) == ADMISSIBLE
 
 
 @inner

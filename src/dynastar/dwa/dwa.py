@@ -12,9 +12,10 @@ from dynastar.config import shown, summary
 from dynastar.dwa import admissible
 from dynastar.dwa.config import DwaConfig, Weights
 from dynastar.dwa.motion import STOP_START, state_at
+from dynastar.dwa.nearest import nearest_admissible
 from dynastar.dwa.rollout import ROW, Schedule, schedule_of
-from dynastar.dwa.scene import AT_REST, Manoeuvre, Scene
-from dynastar.dwa.search import CANDIDATE, SAMPLES, is_admissible, search
+from dynastar.dwa.scene import AT_REST, Manoeuvre, Scene, Surroundings
+from dynastar.dwa.search import CANDIDATE, SAMPLES, search
 from dynastar.dwa.terms import LOOKS, Terms
 from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import Limits, Robot
@@ -214,8 +215,28 @@ class DynamicWindow:
 
     def admits(self, scene: Scene, stops: Stops, command: Twist) -> bool:
         """Whether a command from outside the search is admissible; ``stops`` as in ``choose``."""
+        around = Surroundings(*(getattr(scene, name) for name in Surroundings._fields))
         asked = tuple(map(float, command))
-        return bool(is_admissible(scene, self.rules, _records(stops), asked))
+        return bool(admissible.is_admissible(around, self.rules, _records(stops), asked))
+
+    def nearest(
+        self,
+        surroundings: Surroundings,
+        stops: Stops,
+        twist: Twist,
+        asked: Twist,
+        steady: float = 0.0,
+    ) -> tuple[Twist | None, str]:
+        """The admissible command nearest to one ``asked`` for, and why it is not that one, "" if it is.
+
+        It goes on from ``twist`` within the robot's limits: along the arc asked for, slower if need be,
+        or else turning on the spot. None if only a stop is left. With ``steady`` (s) it speeds up only
+        to what could be held for so long. ``stops`` as in ``choose``.
+        """
+        found, v, omega, code = nearest_admissible(
+            surroundings, self.rules, _records(stops), tuple(twist), tuple(asked), steady
+        )
+        return (Twist(v, omega) if found else None), REFUSALS.get(code, "")
 
 
 def _records(stops: Stops) -> npt.NDArray[np.void]:

@@ -22,6 +22,16 @@ TAILS = FOLLOW, STOP, BACK = 0, 1, 2  # follow the cost-to-go, brake to rest, re
 AT_REST = Manoeuvre(0.0, 0.0, 0.0, STOP)
 
 
+class Surroundings(NamedTuple):
+    """What a stop has to keep clear of: all that admissibility takes. The fields are those of ``Scene``."""
+
+    closed: Closed
+    moving: Prediction
+    hidden: Hidden
+    margin_to_closed: float
+    latency: float
+
+
 class Scene(NamedTuple):
     """The scene against which a window is evaluated.
 

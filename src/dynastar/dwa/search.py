@@ -8,14 +8,9 @@ last, and following the cost-to-go at once.
 import numpy as np
 
 from dynastar.compiled import inner, njit
-from dynastar.dwa.admissible import (
-    ADMISSIBLE,
-    MOVING,
-    certified_stop,
-    rests_in_time,
-)
+from dynastar.dwa.admissible import ADMISSIBLE, MOVING, refusal
 from dynastar.dwa.clearance import least_clearance
-from dynastar.dwa.motion import driveable, slew, state_of, stopping_time
+from dynastar.dwa.motion import command_towards, driveable, stopping_time
 from dynastar.dwa.rollout import Start, roll_out, tail_speeds, write
 from dynastar.dwa.scene import BACK, FOLLOW, TAILS, Manoeuvre
 from dynastar.dwa.terms import Terms, evaluate, most_progress, objective, passes_clear, state_value
@@ -82,10 +77,8 @@ def fill_candidates(scene, rules, start, candidates):
         v, omega = min(max(candidate.v, window.low_v), window.high_v), candidate.omega
         v, omega = driveable(v, v, limits.v_least), driveable(omega, omega, limits.omega_least)
         candidate.v, candidate.omega = v, omega
-        next_v = slew(state.v, v, limits.v_accel, limits.v_brake, rules.period)
-        next_omega = slew(state.omega, omega, limits.omega_accel, limits.omega_brake, rules.period)
-        candidate.command_v = driveable(next_v, v, limits.v_least)
-        candidate.command_omega = driveable(next_omega, omega, limits.omega_least)
+        command = command_towards(rules, (state.v, state.omega), (v, omega))
+        candidate.command_v, candidate.command_omega = command
     return n
 
 
@@ -93,20 +86,6 @@ def fill_candidates(scene, rules, start, candidates):
 def command_of(candidate):
     """The command (v, omega) of a candidate."""
     return candidate.command_v, candidate.command_omega
-
-
-@inner
-def refusal(scene, rules, stops_from, command):
-    """ADMISSIBLE, or why a command (v, omega) is not; MOVING where it does not rest in time.
-
-    The last of ``stops_from`` is the state in which the command is expected to begin to act.
-    """
-    for i in range(len(stops_from)):
-        begin = stops_from[i]
-        code = certified_stop(scene, rules, state_of(begin), command, begin.hold)
-        if code != ADMISSIBLE:
-            return code
-    return rests_in_time(scene, rules, state_of(stops_from[-1]), command)
 
 
 @inner
@@ -156,9 +135,3 @@ def score(scene, rules, start, i, candidate, rows):
             candidate.score, candidate.tail, candidate.hold = total, tail, hold
             candidate.heading, candidate.dist, candidate.vel = terms.heading, terms.dist, terms.vel
             candidate.simi, candidate.risk = terms.simi, terms.risk
-
-
-@njit(cache=True)
-def is_admissible(scene, rules, stops_from, command):
-    """Whether a command (v, omega) from outside the search is admissible."""
-    return refusal(scene, rules, stops_from, command) == ADMISSIBLE

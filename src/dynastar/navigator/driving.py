@@ -2,16 +2,12 @@
 
 import math
 
-import numpy as np
-
-from dynastar.dwa.clearance import kept_margin
-from dynastar.dwa.dwa import Choice, DynamicWindow, Stops
-from dynastar.dwa.motion import state_at
+from dynastar.dwa.dwa import Choice, Stops
 from dynastar.dwa.scene import AT_REST, Manoeuvre, Scene
 from dynastar.geometry import Pose2D, Twist
 from dynastar.guidance import Encounter, Guidance, Guide, PathTarget
 from dynastar.guidance.guidance import NO_LINE
-from dynastar.navigator.arrival import GENTLE
+from dynastar.navigator.admissibility import Admissibility
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.sensing import View
 from dynastar.perception import LocalMap
@@ -21,33 +17,23 @@ from dynastar.robot import Robot
 GIVEN_PATH_WEIGHT = 3.0  # least weight sigma of keeping to a path given by the user
 
 
-class Driving:
+class Driving(Admissibility):
     """One robot's guidance and dynamic window, and what they keep from tick to tick.
 
-    That is the rest of the last manoeuvre, and the line that was followed. ``margin`` (m) is kept from
-    closed space.
+    That is the rest of the last manoeuvre, and the line that was followed.
     """
 
-    def __init__(
-        self, robot: Robot, config: NavigatorConfig, local_map: LocalMap, margin: float
-    ) -> None:
-        self.robot, self.config, self.margin = robot, config, margin
-        self.window = DynamicWindow(robot, config.dwa, config.period, config.drive_error)
+    def __init__(self, robot: Robot, config: NavigatorConfig, local_map: LocalMap) -> None:
+        super().__init__(robot, config)
         self.guidance = Guidance(
             len(local_map.states),
             local_map.resolution,
-            robot.footprint.inscribed + margin,
+            robot.footprint.inscribed + self.margin,
             config.dwa.comfort,
             keep_to_path=config.dwa.weights.simi > 0.0,
         )
         self.guide: Guide | None = None  # of the last tick
         self._last: Manoeuvre = AT_REST
-
-    @property
-    def times(self) -> tuple[float, float, int]:
-        """The times of roll-outs: when a command acts (s), the step (s), and the number of steps."""
-        schedule = self.window.rules.schedule
-        return self.config.latency, schedule.period, int(schedule.step[-1])
 
     @property
     def lookahead(self) -> float:
@@ -73,25 +59,16 @@ class Driving:
         self, pose: Pose2D, v: float, view: View, target: PathTarget, planning_map: PlanningMap
     ) -> Scene:
         """The scene for a robot that is at ``pose`` when a command acts, and drives at ``v`` now (m/s)."""
-        config, limits = self.config, self.robot.limits
         guide = self.guide = self._guided(view, target, pose)
-        stop = v**2 / (2.0 * limits.v_brake) + abs(v) * (
-            config.latency + 2.0 * self.window.rules.period
-        )
-        margin = self.margin + config.heading_error * stop
-        closed, at = view.closed, state_at(*pose, 0.0, 0.0).pose
+        cap = self.speed_cap(pose, guide.line, self.guidance.resolution, planning_map)
         return Scene(
-            closed=closed,
+            **self.surroundings(pose, v, view)._asdict(),
             distance_to_obstacle=view.distance_to_obstacle,
             distance_to_path=guide.distance_to_path,
             cost_to_go=guide.cost_to_go,
-            moving=view.moving,
-            hidden=view.hidden,
-            margin=margin,
-            margin_to_closed=kept_margin(closed, self.window.rules.body, margin, at),
-            latency=config.latency,
+            margin=self.margin_at(v),
             last=self._last,
-            v_cap=min(self._speed_cap(pose, guide, planning_map), view.speed),
+            v_cap=min(cap, view.speed),
             path_weight=GIVEN_PATH_WEIGHT if target.is_given else 0.0,
         )
 
@@ -111,13 +88,3 @@ class Driving:
         return self.guidance.update(
             view.distance_to_obstacle, target, view.moving, encounter, followed
         )
-
-    def _speed_cap(self, pose: Pose2D, guide: Guide, planning_map: PlanningMap) -> float:
-        """The speed (m/s) that leaves room to slow down for the map's speed limits ahead."""
-        limits = self.robot.limits
-        if planning_map.grid.speed_limit is None:
-            return limits.v_max
-        ahead = np.maximum(np.arange(len(guide.line)) - 1.0, 0.0) * self.guidance.resolution
-        limit = planning_map.speed_limit(np.vstack([[pose.x, pose.y], guide.line]))
-        slowed = np.sqrt(limit[1:] ** 2 + 2.0 * GENTLE * limits.v_brake * ahead)
-        return float(min(limits.v_max, limit[0], slowed.min(initial=math.inf)))

@@ -9,7 +9,7 @@ from dynastar.dwa.config import DwaConfig
 from dynastar.dwa.dwa import Choice
 from dynastar.geometry import Goal, Pose2D, Twist, as_goals
 from dynastar.grid import OccupancyGrid
-from dynastar.navigator.aligned import as_moving, turned_disc, turned_goal, turned_pose
+from dynastar.navigator.aligned import turned_disc, turned_goal
 from dynastar.navigator.arrival import has_arrived, is_near
 from dynastar.navigator.braking import Commands
 from dynastar.navigator.config import NavigatorConfig, fitted, margin_of
@@ -21,14 +21,13 @@ from dynastar.navigator.planners import Planners, radii_of
 from dynastar.navigator.progress import Progress
 from dynastar.navigator.replanning import Route
 from dynastar.navigator.sensing import Sensing
-from dynastar.navigator.status import RobotState, Status, as_floats, slowed, within_limits
+from dynastar.navigator.status import RobotState, Status
 from dynastar.path import Path
 from dynastar.perception import MovingObstacle, PlanningMap
 from dynastar.planning import Planner
 from dynastar.robot import Robot
-from dynastar.scan import LaserScan, as_scans
+from dynastar.scan import LaserScan
 
-TRIAL = Twist(0.1, 0.3)  # speeds up to which the robot tries whether a lidar is really frozen
 FINE = 8  # cells to half the robot's width, from which on cells are not halved
 
 
@@ -111,7 +110,7 @@ class Navigator:
     def retune(self, dwa: DwaConfig) -> None:
         """Use other settings of the dynamic window; path, goals and what was seen stay."""
         config = self.config = self.config._replace(dwa=dwa)
-        self.driving = Driving(self.robot, config, self.sensing.local_map, self.margin)
+        self.driving = Driving(self.robot, config, self.sensing.local_map)
         self._choice: Choice | None = None
 
     def set_map(self, grid: OccupancyGrid) -> None:
@@ -133,7 +132,7 @@ class Navigator:
         else:
             self.sensing = Sensing(self.robot, config, planning_map)
         before = self.driving
-        self.driving = Driving(self.robot, config, self.sensing.local_map, self.margin)
+        self.driving = Driving(self.robot, config, self.sensing.local_map)
         if grid.frame.yaw == yaw:
             self.driving.carry_on(before)
         self.route.set_map(self._planners_on(planning_map))
@@ -200,19 +199,12 @@ class Navigator:
     ) -> Twist:
         """The twist to drive from now on; ``movers`` replaces what the tracker finds in the scans."""
         self._choice = None
-        state, mission = within_limits(as_floats(state), self.robot.limits), self.mission
-        state = state._replace(pose=turned_pose(state.pose, -self._yaw))
+        mission = self.mission
         last_resort = self.config.unseen_speed > 0.0 and self.progress.rounds > 1
-        fault = self.sensing.update(state, as_scans(scan), last_resort)
-        try:
-            movers = as_moving(movers)
-        except ValueError as error:
-            fault = fault or str(error)
+        state, movers, fault = self.sensing.perceive(state, scan, movers, last_resort)
         if fault is not None:
             mission.lose(fault)
             return self._commands.brake(state)
-        if movers is not None:
-            movers = [turned_disc(mover, -self._yaw) for mover in movers]
         if mission.regain():
             self.progress.restart(state.stamp)
         self._commands.period = self.sensing.poses.period
@@ -227,9 +219,7 @@ class Navigator:
         if not mission.under_way:
             return self._commands.brake(state)
         command = self._decide(state, acting, movers)
-        if command is not None and self.sensing.is_frozen and abs(state.twist.v) < 2.0 * TRIAL.v:
-            command = slowed(command, TRIAL)  # a faster robot brakes when its data are too old
-        return self._commands.send(state, command)
+        return self._commands.send(state, self.sensing.on_trial(state, command))
 
     def _has_arrived(self, state: RobotState, acting: tuple[Pose2D, Twist]) -> bool:
         goal, config = turned_goal(self.mission.goals[0], -self._yaw), self.config

@@ -10,23 +10,25 @@ import numpy.typing as npt
 from dynastar.clearance import lower_bounds
 from dynastar.dwa.clearance import Closed
 from dynastar.field import Field
-from dynastar.geometry import Goal, Pose2D, compose
+from dynastar.geometry import Goal, Pose2D, Twist, compose
+from dynastar.navigator.aligned import as_moving, turned_disc, turned_pose
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.pose_history import PoseHistory
 from dynastar.navigator.scan_feed import ScanFeed
-from dynastar.navigator.status import RobotState
+from dynastar.navigator.status import RobotState, as_floats, slowed, within_limits
 from dynastar.perception import LocalMap, MovingObstacle, PlanningMap, Tracker
 from dynastar.perception.hidden import Hidden, HiddenSpace
 from dynastar.perception.local_map import SEEN_OCCUPIED
 from dynastar.perception.placed_scan import placed
 from dynastar.perception.prediction import Prediction, predict
 from dynastar.robot import Robot
-from dynastar.scan import LaserScan
+from dynastar.scan import LaserScan, as_scans
 
 Mask = npt.NDArray[np.bool_]
 
 LARGEST = MovingObstacle(1e6, 1e6, 1e3, 1e3, 1e3)  # m and m/s, of one that a caller gives
 AT_PLACE = 0.5  # m from a moving obstacle, up to which it is at a place
+TRIAL = Twist(0.1, 0.3)  # speeds up to which the robot tries whether a lidar is really frozen
 SEEN_NOW = 0.15  # s that a cell counts as in view after it was seen
 
 
@@ -42,6 +44,14 @@ class View(NamedTuple):
     hidden: Hidden
     moving: Prediction
     speed: float
+
+
+class Perceived(NamedTuple):
+    """A state and moving obstacles as the navigator uses them, in its own frame, and a fault or None."""
+
+    state: RobotState
+    movers: Sequence[MovingObstacle] | None
+    fault: str | None
 
 
 class Sensing:
@@ -76,6 +86,35 @@ class Sensing:
     def is_frozen(self) -> bool:
         """Whether some lidar repeats readings that the robot's motion contradicts."""
         return self._feed.is_frozen
+
+    def perceive(
+        self,
+        state: RobotState,
+        scan: LaserScan | Sequence[LaserScan] | None,
+        movers: Sequence[MovingObstacle] | None,
+        trusts_map: bool = False,
+    ) -> Perceived:
+        """Check and turn what a caller gives, and ``update``."""
+        yaw = self.planning_map.grid.frame.yaw
+        state = within_limits(as_floats(state), self.robot.limits)
+        state = state._replace(pose=turned_pose(state.pose, -yaw))
+        fault = self.update(state, as_scans(scan), trusts_map)
+        try:
+            movers = as_moving(movers)
+        except ValueError as error:
+            return Perceived(state, None, fault or str(error))
+        if movers is not None:
+            movers = [turned_disc(mover, -yaw) for mover in movers]
+        return Perceived(state, movers, fault)
+
+    def on_trial(self, state: RobotState, command: Twist | None) -> Twist | None:
+        """The command, slowed while the robot tries whether a lidar is really frozen.
+
+        A faster robot brakes when its data are too old.
+        """
+        if command is None or not self.is_frozen or abs(state.twist.v) >= 2.0 * TRIAL.v:
+            return command
+        return slowed(command, TRIAL)
 
     def update(
         self, state: RobotState, scans: Sequence[LaserScan], trusts_map: bool = False

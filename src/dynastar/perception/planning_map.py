@@ -173,3 +173,15 @@ class PlanningMap:
         box = np.s_[top : top + np.ptp(rows) + 1, left : left + np.ptp(columns) + 1]
         self.blocked[box] = (self.prior[box] & ~self.cleared[box]) | self.seen[box]
         return Patch(top, left, self.blocked[box])
+
+
+class NoMap(PlanningMap):
+    """Takes a planning map's place where there is no map: nothing is known of any place."""
+
+    def __init__(self, resolution: float = 0.05) -> None:
+        super().__init__(OccupancyGrid(np.array([[-1]], np.int8), resolution), resolution, "free")
+        self.known = Known(np.zeros_like(self.prior), self.frame)
+
+    def under(self, mask: Mask, local_map: LocalMap, outside: bool) -> Mask:
+        """As for a map; off the map nothing is known, whatever ``outside`` says."""
+        return super().under(mask, local_map, False)
