@@ -203,6 +203,22 @@ def test_speed_limits_of_the_map_count_before_they_begin():
     assert given == Guarded(pytest.approx((0.3, 0.0)), True, "speed limit")
 
 
+def test_another_map_keeps_what_was_seen_and_its_zones_count():
+    grid = OccupancyGrid(np.zeros((60, 80), np.int8), GridFrame(CELL))
+    zone = np.zeros((60, 80), np.int8)
+    zone[:, 40:] = 100
+    drive = GuardedDrive()
+    drive.drive(Twist(1.0, 0.0), 1.0)
+    for found in (with_keepout(grid, OccupancyGrid(zone, GridFrame(CELL))), None):
+        drive.guard.set_map(found)
+        assert drive.tick(Twist(1.0, 0.0)).command.v > 0.0
+        drive.drive(Twist(1.0, 0.0), 8.0)
+        assert (drive.world.pose.x < 4.0) == (found is not None)
+    drive.guard.set_map(OccupancyGrid(np.zeros((60, 80), np.int8), GridFrame(CELL, yaw=0.3)))
+    assert drive.world.contact == ""
+    assert drive.drive(Twist(0.0, 0.4), 1.0)[-1].command.omega > 0.3
+
+
 def test_a_turned_map_changes_nothing():
     straight, turned = GuardedDrive(), None
     yaw = 0.7

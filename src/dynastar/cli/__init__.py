@@ -31,6 +31,7 @@ COMMANDS = {
     "bench": "run suites of missions, compare results",
     "paper": "remake the paper's tables and figures",
     "ros": "the navigator as a ROS 2 node",
+    "ros-guard": "a guard for the commands of another controller, as a ROS 2 node",
     "ros-sim": "the simulator as a ROS 2 node",
     "ros-goal": "send the ROS 2 node a goal, and say what happens",
     "replay": "drive by the scans and odometry of a recording",
@@ -50,7 +51,7 @@ examples:
   dynastar play
   dynastar warmup"""
 
-ROS, TAKE_ROS = "--ros-args", ("ros", "ros-sim", "ros-goal")
+ROS, TAKE_ROS = "--ros-args", ("ros", "ros-guard", "ros-sim", "ros-goal")
 
 BROKEN_PIPE = 141
 

@@ -69,12 +69,7 @@ class Guard:
         robot = as_robot(NoMap().grid if grid is None else grid, robot, config)
         config = fitted(config, robot.footprint.half_width)
         self.robot, self.config = robot, config
-        self._map = (
-            NoMap(config.resolution)
-            if grid is None
-            else PlanningMap(grid, config.resolution, config.unknown)
-        )
-        self.sensing = Sensing(robot, config, self._map)
+        self.sensing = Sensing(robot, config, self._planning_map(grid))
         self._check = Admissibility(robot, config)
         self._commands = Commands(robot.limits, config.period, config.latency)
         self._acts_at = Pose2D(0.0, 0.0, 0.0)
@@ -84,6 +79,24 @@ class Guard:
     def __repr__(self) -> str:
         on = "no map" if isinstance(self._map, NoMap) else self._map.grid.size()
         return summary(self, f"robot {shown(self.robot.name)}", on, repr(self.last))
+
+    def set_map(self, grid: OccupancyGrid | None) -> None:
+        """Use another map, or none. What was seen is kept, unless the map has another yaw."""
+        planning_map = self._planning_map(grid)
+        if planning_map.grid.frame.yaw == self._map.grid.frame.yaw:
+            self.sensing.set_map(planning_map)
+        else:
+            self.sensing = Sensing(self.robot, self.config, planning_map)
+
+    def _planning_map(self, grid: OccupancyGrid | None) -> PlanningMap:
+        config = self.config
+        if grid is None:
+            return NoMap(config.resolution)
+        return PlanningMap(grid, config.resolution, config.unknown)
+
+    @property
+    def _map(self) -> PlanningMap:
+        return self.sensing.planning_map
 
     @property
     def hints(self) -> list[str]:

@@ -23,6 +23,14 @@ def navigate(arguments: Sequence[str]) -> int:
     return run(NavigatorNode, arguments)
 
 
+def guard(arguments: Sequence[str]) -> int:
+    """Runs the guard's node."""
+    from dynastar.ros.guard_node import GuardNode
+
+    warm_up()
+    return run(GuardNode, arguments)
+
+
 def simulate(scenario: Any, arguments: Sequence[str]) -> int:
     """Runs the simulator's node with a scenario."""
     from dynastar.ros.sim_node import SimulatorNode

@@ -5,6 +5,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from dynastar.geometry import Pose2D, Twist
 from dynastar.navigator import RobotState, Status
@@ -17,6 +18,8 @@ WORST, BEST = np.array((0.84, 0.37, 0.0)), np.array((0.0, 0.45, 0.70))  # of the
 REFUSED: Colour = (0.6, 0.6, 0.6, 0.5)
 TRACK = (0.0, 0.62, 0.45)
 ROBOT: Colour = (0.29, 0.08, 0.38, 0.8)
+HELD_BACK: Colour = (0.9, 0.6, 0.0, 0.9)
+SIDES = 24  # of the polygon that is drawn for a disc
 CYLINDER, LINE_STRIP, LINE_LIST = 3, 4, 5  # types of a Marker
 DELETE_ALL = 3  # an action of a Marker
 LINE = 0.01  # m, width of the arcs
@@ -38,6 +41,20 @@ class Markers:
             *self._tracks(status, now),
         ]
         return self._messages.make("visualization_msgs/msg/MarkerArray", markers=markers)
+
+    def stop(
+        self, footprint: Footprint, poses: npt.NDArray[np.float64], held_back: bool, now: float
+    ) -> Any:
+        """The outline of the footprint at each pose (n, 3) of a stop, orange if that was held back."""
+        out, outline, points = self._messages, outline_of(footprint), []
+        for *place, theta in poses:
+            cos, sin = math.cos(theta), math.sin(theta)
+            placed = outline @ np.array([[cos, sin], [-sin, cos]]) + place
+            for side in pairwise([*placed, placed[0]]):
+                points += [out.point(x, y, 0.05) for x, y in side]
+        colour = out.colour(HELD_BACK if held_back else (*TRACK, 0.9))
+        marker = self._marker("stop", LINE_LIST, LINE, now, color=colour, points=points)
+        return out.make("visualization_msgs/msg/MarkerArray", markers=[marker])
 
     def _robot(self, footprint: Footprint, state: RobotState, now: float) -> Any:
         """The footprint: a disc, or the outline of its polygon."""
@@ -83,6 +100,14 @@ class Markers:
         scale = out.make("geometry_msgs/msg/Vector3", x=size, y=size, z=0.1)
         shape = {"ns": group, "type": kind, "header": header, "pose": pose, "scale": scale}
         return out.make("visualization_msgs/msg/Marker", **shape, **fields)
+
+
+def outline_of(footprint: Footprint) -> npt.NDArray[np.float64]:
+    """The corners (n, 2) of a footprint, metres; a disc has many."""
+    if not footprint.is_disc:
+        return footprint.vertices
+    angles = np.arange(SIDES) * math.tau / SIDES
+    return footprint.circumscribed * np.column_stack([np.cos(angles), np.sin(angles)])
 
 
 def _arcs(status: Status, state: RobotState) -> list[tuple[list[Pose2D], Colour]]:

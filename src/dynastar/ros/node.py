@@ -10,62 +10,44 @@ from typing import Any
 from nav_msgs.srv import GetPlan
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
-from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
 from std_srvs.srv import Trigger
 
 from dynastar.errors import DynastarError, InputError
-from dynastar.geometry import Goal, Twist
+from dynastar.geometry import Goal
 from dynastar.planning import plan
 from dynastar.ros.bag import BagWriter
 from dynastar.ros.bridge import REQUESTS, TAKES, Bridge, Tick, start_request
+from dynastar.ros.driving_node import DrivingNode
 from dynastar.ros.incoming import goal_of
-from dynastar.ros.middleware import make, message_class
-from dynastar.ros.outgoing import Messages
-from dynastar.ros.parameters import Parameters
+from dynastar.ros.middleware import make
 from dynastar.ros.publishing import PUBLISHES, StatusPublisher
 from dynastar.ros.settings import flat, nested
 
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-SENSORS = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
-FRAMES = QoSProfile(depth=100)
-FRAMES_FIXED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-QUALITY = {"/tf": FRAMES, "/tf_static": FRAMES_FIXED, "/diagnostics": QoSProfile(depth=10)}
-QUALITY |= {"scan": SENSORS, "odom": SENSORS}
-LATCHES = ("map", "keepout_filter_mask", "speed_filter_mask", "amcl_pose", "plan")
 
-
-def quality(topic: str) -> QoSProfile:
-    """The quality of service that ROS 2 uses for a topic."""
-    return LATCHED if topic in LATCHES else QUALITY.get(topic, QoSProfile(depth=1))
-
-
-class NavigatorNode(Node):  # type: ignore[misc]
+class NavigatorNode(DrivingNode):
     """Drives as ``Navigator.command`` says: at every scan, and by a timer where scans stay away."""
 
+    bridge: Bridge
+
     def __init__(self, **options: Any) -> None:
-        super().__init__("dynastar", **options)
-        self.parameters = Parameters(self)
+        super().__init__("dynastar", PUBLISHES, **options)
         settings = self.parameters.settings
         self.bridge = Bridge(settings, self.parameters.robot, self.parameters.config)
-        self._out = Messages(make)
         self._bag = BagWriter(Path(settings.bag), aside=False) if settings.bag else None
         self._ticked, self._state = -math.inf, ""
-        self._clock_read, self._clock_moved = -math.inf, time.monotonic()
-        twist = "TwistStamped" if settings.enable_stamped_cmd_vel else "Twist"
-        self._kinds = {**TAKES, **PUBLISHES, "cmd_vel": f"geometry_msgs/msg/{twist}"}
-        self._outlets = {
-            topic: self.create_publisher(message_class(self._kinds[topic]), topic, quality(topic))
-            for topic in (*PUBLISHES, "cmd_vel")
-        }
+        self._kinds |= TAKES
         self._status = StatusPublisher(
-            self._out, settings.global_frame, self.get_name(), self._publish, self._wanted
+            self._out,
+            settings.global_frame,
+            f"{self.get_name()}: navigation",
+            self._publish,
+            self._wanted,
         )
         robot, config = self.parameters.robot, self.parameters.config
         self._note_request(start_request(settings, robot, config))
-        self._subscribe()
+        self._subscribe(TAKES)
         self._actions = self._serve()
         # The steady clock goes on when a simulator's clock does not.
         steady = Clock(clock_type=ClockType.STEADY_TIME)
@@ -73,14 +55,6 @@ class NavigatorNode(Node):  # type: ignore[misc]
         self._watchdog = self.create_timer(late, self._tick, clock=steady)
         self.add_on_set_parameters_callback(self._set_parameters)
         self.get_logger().info(f"{settings.robot}, preset {settings.preset}: waiting for a map")
-
-    def _subscribe(self) -> None:
-        for topic, kind in TAKES.items():
-            if message_class(kind) is not None:  # tf2_msgs is not always installed
-                take = lambda message, topic=topic: self._take(topic, message)  # noqa: E731
-                self.create_subscription(message_class(kind), topic, take, quality(topic))
-            elif self.parameters.settings.pose_source == "tf":
-                raise InputError("'pose_source' is tf, which needs the package tf2_msgs")
 
     def _serve(self) -> Any:
         """The services, and Nav2's actions where their types are installed; those, or None."""
@@ -137,31 +111,11 @@ class NavigatorNode(Node):  # type: ignore[misc]
 
     # -- the loop ---------------------------------------------------------------------------------
 
-    def _check_clock(self, now: float) -> None:
-        """Notes whether the clock goes on, by the steady clock."""
-        steady = time.monotonic()
-        if now != self._clock_read:
-            self._clock_read, self._clock_moved = now, steady
-            if self.bridge.fault:
-                self._request(fault="")
-            return
-        age = self.parameters.settings.data_age
-        if not self.bridge.fault and steady - self._clock_moved > age:
-            self._request(fault="the clock stands still")
-
-    def _clock_time(self) -> float:
-        """The clock in seconds, to the microsecond, as recordings have it."""
-        return 1e-6 * (self.get_clock().now().nanoseconds // 1000)
-
-    def _time(self) -> float:
-        """The clock in seconds; one that went back starts everything anew, without a goal."""
-        now = self._clock_time()
-        if self.bridge.jumped(now):
-            self._request(restart="the clock went back")
-            self._status.reset()
-            self._ticked = -math.inf
-            self.get_logger().warning("the clock went back: the goal is dropped")
-        return now
+    def _restart(self) -> None:
+        self._request(restart="the clock went back")
+        self._status.reset()
+        self._ticked = -math.inf
+        self.get_logger().warning("the clock went back: the goal is dropped")
 
     def _tick(self) -> None:
         """A command: at every scan, and a little over a period after the last one where none comes."""
@@ -197,30 +151,24 @@ class NavigatorNode(Node):  # type: ignore[misc]
         )
         self.get_logger().info(f"{'goal' if len(goals) == 1 else 'goals'} {words}")
 
-    def _send(self, command: Twist, now: float) -> None:
-        settings = self.parameters.settings
-        if settings.enable_stamped_cmd_vel:
-            message = self._out.twist_stamped(command, settings.base_frame, now)
-        else:
-            message = self._out.twist(command)
-        self._record("cmd_vel", message, now)
-        self._outlets["cmd_vel"].publish(message)
-
     def stop(self) -> None:
         """Ends the recording; the last word is zero."""
         if self._bag is not None:
             self._bag.close()
             self._bag = None
-        self._send(Twist(0.0, 0.0), self._clock_time())
+        super().stop()
 
     # -- what goes out ----------------------------------------------------------------------------
 
     def _publish(self, topic: str, message: Any) -> None:
-        self._record(topic, message, self._ticked)
-        self._outlets[topic].publish(message)
+        self._emit(topic, message, self._ticked)
+
+    def _emit(self, topic: str, message: Any, now: float) -> None:
+        self._record(topic, message, now)
+        super()._emit(topic, message, now)
 
     def _wanted(self, topic: str) -> bool:
-        return self._bag is not None or self._outlets[topic].get_subscription_count() > 0
+        return self._bag is not None or super()._wanted(topic)
 
     def _record(self, topic: str, message: Any, now: float) -> None:
         if self._bag is not None:

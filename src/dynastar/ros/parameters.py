@@ -13,17 +13,20 @@ from dynastar.ros.settings import NodeSettings, fields_of, flat, nested, robot_o
 
 
 class Parameters:
-    """A node's parameters as checked settings."""
+    """A node's parameters as checked settings.
 
-    def __init__(self, node: Node) -> None:
+    Settings of the node in ``left_out`` are not declared; ``defaults`` replace the navigator's.
+    """
+
+    def __init__(self, node: Node, left_out: tuple[str, ...] = (), **defaults: Any) -> None:
         self.node = node
-        own = {name: _declare(node, name, field, NodeSettings._field_defaults[name])
-               for name, field in fields_of(NodeSettings).items()}  # fmt: skip
+        own = {name: declare(node, name, field, NodeSettings._field_defaults[name])
+               for name, field in fields_of(NodeSettings).items() if name not in left_out}  # fmt: skip
         self.settings = checked(NodeSettings, own)
         base = choose(self.settings.robot, ROBOTS, "robot")
         limits = _declare_all(node, base.limits, "limits.")
         self.robot = robot_of(base, checked(Limits, limits, "limits"), self.settings)
-        preset = configured(self.settings.preset)
+        preset = configured(self.settings.preset, defaults)
         self._defaults = flat(preset)
         self.config = self.changed(_declare_all(node, preset, ""))
 
@@ -43,12 +46,13 @@ def _declare_all(node: Node, values: Any, prefix: str) -> dict[str, Any]:
     """Declares the fields of a tuple of settings; their values by dotted name without the prefix."""
     fields = fields_of(type(values))
     return {
-        name: _declare(node, f"{prefix}{name}", fields.get(name, Field("")), value)
+        name: declare(node, f"{prefix}{name}", fields.get(name, Field("")), value)
         for name, value in flat(values).items()
     }
 
 
-def _declare(node: Node, name: str, field: Field, default: Any) -> Any:
+def declare(node: Node, name: str, field: Field, default: Any) -> Any:
+    """Declares a parameter and returns its value."""
     unit = f" ({field.unit})" if field.unit else ""
     described = ParameterDescriptor(description=f"{field.doc}{unit}", dynamic_typing=True)
     if abs(field.low) < float("inf"):

@@ -15,7 +15,10 @@ from dynastar.ros.markers import AHEAD, POINTS, Markers
 from dynastar.ros.outgoing import Messages
 
 EVERY = 0.2  # s between two pictures of the candidates, the tracks and the local map
-OK_STATES = ("idle", "following", "avoiding", "waiting", "turning", "recovering", "arrived")
+OK_STATES = (
+    *("idle", "following", "avoiding", "waiting", "turning", "recovering", "arrived"),
+    *("passing", "limiting"),  # of a guard
+)
 OK, WARN, ERROR = (bytes([level]) for level in range(3))  # levels of a DiagnosticStatus
 
 PUBLISHES = {
@@ -29,7 +32,10 @@ PUBLISHES = {
 
 
 class StatusPublisher:
-    """Decides when to publish what; ``publish(topic, message)`` sends it where it is ``wanted(topic)``."""
+    """Decides when to publish what; ``publish(topic, message)`` sends it where it is ``wanted(topic)``.
+
+    ``name`` is that of the status in /diagnostics.
+    """
 
     def __init__(
         self,
@@ -97,7 +103,7 @@ class StatusPublisher:
         status = make(
             "diagnostic_msgs/msg/DiagnosticStatus",
             level=ERROR if state == "sensor_lost" else level,
-            name=f"{self._name}: navigation",
+            name=self._name,
             message=f"{state}: {reason}",
             values=pairs,
         )

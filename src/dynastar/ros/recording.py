@@ -65,7 +65,7 @@ class RecordingController:
         frame = self._settings.global_frame
         self._bridge = Bridge(self._settings, robot, config)
         self._status = StatusPublisher(
-            self._out, frame, "dynastar", self._write, lambda topic: True
+            self._out, frame, "dynastar: navigation", self._write, lambda topic: True
         )
         self._write(REQUESTS, self._out.text(start_request(self._settings, robot, config)))
         self._give(

@@ -48,6 +48,17 @@ class NodeSettings(NamedTuple):
     speed_filter_multiplier: Annotated[float, Field("of the mask's value", "", -1e3, 1e3)] = -1.0
 
 
+class GuardSettings(NamedTuple):
+    """What a guard's node is told besides."""
+
+    use_map: Annotated[
+        bool, Field("use map and masks; poses then have to be in the map's frame")
+    ] = False
+    command_age: Annotated[
+        float, Field("largest age of a command before the robot brakes", "s", 0.05, 5.0)
+    ] = 0.5
+
+
 def flat(values: Any, prefix: str = "") -> dict[str, Any]:
     """The fields of a tuple of settings by dotted name."""
     found: dict[str, Any] = {}

@@ -16,8 +16,8 @@ from sensor_msgs.msg import LaserScan as ScanMessage
 from std_msgs.msg import String
 
 from dynastar.geometry import Pose2D, Twist
+from dynastar.ros.driving_node import FRAMES, FRAMES_FIXED, LATCHED
 from dynastar.ros.middleware import make, message_class
-from dynastar.ros.node import FRAMES, FRAMES_FIXED, LATCHED
 from dynastar.ros.outgoing import Messages
 from dynastar.simulation import Scenario, World
 from dynastar.simulation.start import check_start

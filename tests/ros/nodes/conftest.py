@@ -36,8 +36,8 @@ from std_msgs.msg import String
 
 from dynastar.geometry import Pose2D
 from dynastar.geometry import Twist as DynastarTwist
+from dynastar.ros.driving_node import LATCHED
 from dynastar.ros.middleware import make
-from dynastar.ros.node import LATCHED
 from dynastar.ros.outgoing import Messages
 from dynastar.scan import LaserScan as DynastarScan
 

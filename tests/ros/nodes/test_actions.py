@@ -16,8 +16,8 @@ from rclpy.action import ActionClient
 from tf2_msgs.msg import TFMessage
 
 from dynastar.geometry import Pose2D
+from dynastar.ros.driving_node import FRAMES, FRAMES_FIXED
 from dynastar.ros.middleware import make
-from dynastar.ros.node import FRAMES, FRAMES_FIXED
 from dynastar.ros.outgoing import Messages
 
 OUT = Messages(make)
