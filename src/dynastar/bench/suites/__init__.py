@@ -20,6 +20,7 @@ SUITES = {
     "office": "dynastar.bench.suites.office",
     "faults": "dynastar.bench.suites.faults",
     "random": "dynastar.bench.suites.random_worlds",
+    "bounds": "dynastar.bench.suites.bounds",
     "people": "dynastar.bench.suites.people",
     "robots": "dynastar.bench.suites.robots",
     "crowdnav": "dynastar.bench.suites.crowdnav",

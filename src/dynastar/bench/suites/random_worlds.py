@@ -80,9 +80,7 @@ def leave_out(mission: Mission, options: Options) -> str:
 def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
     """The mission of a number; raises DataError for one that ``leave_out`` leaves out."""
     del repeat
-    made = make(options.seed, mission.number)
-    if isinstance(made, str):
-        raise DataError(f"random {mission.number}: {made}")
+    made = made_of(mission, options)
     return driven.realistic(
         Scenario(
             name=f"random {mission.number}: {made.kind.replace('_', ' ')}, {made.robot.name}",
@@ -101,8 +99,7 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
 def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
     """Drives a mission; a ``blocked`` that is right has the outcome ``blocked_rightly``."""
     driven_scenario = scenario(mission, options, repeat)
-    made = make(options.seed, mission.number)
-    assert not isinstance(made, str)
+    made = made_of(mission, options)
     reachable = made.world.reachable
 
     def extra(episode: Episode) -> Mapping[str, Any]:
@@ -111,6 +108,14 @@ def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, An
     return driven.run_mission(
         driven_scenario, options, mission, repeat, group=made.kind, extra=extra
     )
+
+
+def made_of(mission: Mission, options: Options) -> Made:
+    """What a mission is made of; raises DataError for one that ``leave_out`` leaves out."""
+    made = make(options.seed, mission.number)
+    if isinstance(made, str):
+        raise DataError(f"random {mission.number}: {made}")
+    return made
 
 
 def verdict(episode: Episode, reachable: bool) -> dict[str, Any]:
