@@ -121,6 +121,16 @@ def test_noise_does_not_make_it_start_and_stop_at_a_wall(period, seed):
     assert drive.world.contact == ""
 
 
+@pytest.mark.parametrize("period", [0.1, 0.02])
+def test_it_turns_away_from_a_wall_and_drives_on_in_one_go(period):
+    drive = GuardedDrive(period=period)
+    drive.drive(Twist(1.0, 0.0), 12.0)
+    found = drive.drive(Twist(1.0, 0.5), 6.0)
+    changes = np.sign(np.diff([one.command.v for one in found]))
+    assert np.count_nonzero(np.diff(changes[changes != 0.0])) <= 2
+    assert drive.world.twist.v > 0.5
+
+
 def test_from_a_wall_it_starts_again_when_asked_for_a_way_that_is_free():
     drive = GuardedDrive(robot=ROBOTS["pioneer3dx"])
     drive.drive(Twist(0.5, 0.0), 20.0)

@@ -28,9 +28,9 @@ def nearest_admissible(surroundings, rules, stops_from, twist, asked, steady):
 def fastest(surroundings, rules, stops_from, twist, asked, steady):
     """The command towards the largest admissible share of the speeds ``asked`` for.
 
-    A robot at rest that has to be ``steady`` starts with no share below a part, so that the noise of
-    its sensors does not start and stop it. Returns whether there is such a command, its v and omega,
-    and why the speeds asked for are refused, or ADMISSIBLE.
+    A robot that has to be ``steady`` starts with no share below a part, so that the noise of its
+    sensors does not start and stop it. Returns whether there is such a command, its v and omega, and
+    why the speeds asked for are refused, or ADMISSIBLE.
     """
     why, v, omega = checked(surroundings, rules, stops_from, twist, asked, steady)
     if why == ADMISSIBLE:
@@ -43,7 +43,7 @@ def fastest(surroundings, rules, stops_from, twist, asked, steady):
         if code == ADMISSIBLE:
             best = share
             break
-    starts = steady > 0.0 and twist[0] == 0.0 and twist[1] == 0.0
+    starts = steady > 0.0 and (twist[0] if asked[0] != 0.0 else twist[1]) == 0.0
     if best > 0.0 or not starts:
         for _ in range(HALVINGS):
             step *= 0.5
