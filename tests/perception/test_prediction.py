@@ -40,8 +40,8 @@ def test_an_obstacle_that_stops_comes_to_rest_half_a_second_of_way_ahead():
 
 
 def test_the_deviation_grows_to_a_limit_and_the_weights_add_up():
-    moving = predict([MovingObstacle(0.0, 0.0, 1.0, 0.0, 0.3)], CONFIG, (0.2, 0.1, 10))
-    ahead = 0.2 + 0.1 * np.arange(1, 11)
+    moving = predict([MovingObstacle(0.0, 0.0, 1.0, 0.0, 0.3)], CONFIG, (0.2, 0.1, 30))
+    ahead = 0.2 + 0.1 * np.arange(1, 31)
     assert moving.deviation == pytest.approx(CONFIG.error + CONFIG.spread * (1.0 - np.exp(-ahead)))
     assert WEIGHTS.sum() == pytest.approx(1.0)
     assert moving.weights.tolist() == WEIGHTS.tolist()

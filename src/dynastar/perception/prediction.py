@@ -18,7 +18,7 @@ from dynastar.perception.tracking import MovingObstacle
 
 Floats = npt.NDArray[np.float64]
 
-WEIGHTS = np.array([0.7, 0.2, 0.1])  # of the hypotheses: continue, stop, turn back
+WEIGHTS = np.array([0.9, 0.08, 0.02])  # continue, stop, turn back: see docs/prediction.md
 STOPPING_RATE = 2.0  # 1/s at which the speed of a moving obstacle that stops decays
 OBSTACLE = np.dtype([(name, np.float64) for name in MovingObstacle._fields])
 TRACKING_ERROR = 0.05  # m, bound of the error of a tracked position
