@@ -96,7 +96,7 @@ def execute(arguments: argparse.Namespace) -> int:
         words = [arguments.preset, *arguments.set]
         name = " ".join(word for word in words if word is not None)
         runs[name] = as_it_is._replace(preset=arguments.preset, settings=settings)
-    remap = _remap(arguments.topic)
+    remap = topic_table(arguments.topic)
     bag = Path(arguments.bag)
     folder = make_folder("--out", arguments.out or Path("out", f"replay-{bag.stem or 'bag'}"))
     prepare()
@@ -127,7 +127,7 @@ def _goal(numbers: list[float]) -> "Goal":
     return Goal(*numbers)
 
 
-def _remap(pairs: list[str]) -> dict[str, str]:
+def topic_table(pairs: list[str]) -> dict[str, str]:
     """The table that ``NAME=TOPIC`` pairs stand for; InputError for one that is none."""
     from dynastar.ros.bridge import TAKES
 

@@ -23,7 +23,9 @@ from dynastar.io.paths import local_path
 from dynastar.io.scenario_tables import MapTable, PlaceTable, RobotTable, ScenarioTable
 from dynastar.io.scenario_things import contains, read_mover, read_obstacle
 from dynastar.masks import SpeedScale, with_keepout, with_speed_limits
+from dynastar.navigator import NavigatorConfig
 from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot
+from dynastar.simulation.run import effective_config
 from dynastar.simulation.scenario import Noise, Scenario
 from dynastar.simulation.start import check_start
 
@@ -35,6 +37,11 @@ _DEEP = rf"{_PART}(?:\.[ \t]*{_PART}){{32}}"
 _TOKEN = re.compile(rf"(?P<deep>{_DEEP})|{_STRING}|#[^\n]*|[\w-]+|.", re.DOTALL)
 
 DATA_VARIABLE = "DYNASTAR_DATA"
+# A map and a mission for a file that tells of a robot alone, and the keys that such a file can lack.
+NOWHERE: Mapping[str, Any] = {"map": {"rows": ["."]}, "start": [0.5, 0.5, 0.0], "goal": [0.5, 0.5]}
+OF_A_PLACE = {
+    *NOWHERE, "goals", "world", "keepout", "speed_limit", "obstacles", "movers",
+}  # fmt: skip
 
 
 def load_scenario(path: str | Path) -> Scenario:
@@ -44,22 +51,44 @@ def load_scenario(path: str | Path) -> Scenario:
     ScenarioError, led by the file's name, for whatever is missing, misspelt or contradictory.
     """
     path = local_path(path, ScenarioError)
+    source = _read_toml(path)
+    try:
+        return read_scenario(source, path.parent, path.stem)
+    except InputError as error:
+        raise ScenarioError(f"{path}: {error}") from None
+
+
+def load_robot(path: str | Path) -> tuple[Robot, NavigatorConfig]:
+    """The robot in a TOML file, and the navigator's settings for it.
+
+    The file has the keys of a scenario; what tells of a place or a mission is not needed and is not
+    read. Raises ScenarioError, led by the file's name.
+    """
+    path = local_path(path, ScenarioError)
+    source = _read_toml(path)
+    try:
+        checked(ScenarioTable, {**NOWHERE, **source})
+        told = {key: value for key, value in source.items() if key not in OF_A_PLACE}
+        scenario = read_scenario({**told, **NOWHERE}, path.parent, path.stem)
+    except InputError as error:
+        raise ScenarioError(f"{path}: {error}") from None
+    return scenario.robot, effective_config(scenario)
+
+
+def _read_toml(path: Path) -> dict[str, Any]:
+    """The tables of a TOML file; raises ScenarioError for what is none."""
     data = read_bytes(path, MAX_TABLE_BYTES, ScenarioError)
     try:
         text = data.decode("utf-8")
         if any(token.lastgroup for token in _TOKEN.finditer(text)):
             raise ValueError("a key of more than 32 parts")  # tomllib takes their square
-        source = tomllib.loads(text)
+        return tomllib.loads(text)
     except UnicodeDecodeError:
         raise ScenarioError(f"{path}: this is not a text file") from None
     except RecursionError:
         raise ScenarioError(f"{path}: this TOML is nested too deep") from None
     except ValueError as error:
         raise ScenarioError(f"{path}: this is not valid TOML: {error!s:.120}") from None
-    try:
-        return read_scenario(source, path.parent, path.stem)
-    except InputError as error:
-        raise ScenarioError(f"{path}: {error}") from None
 
 
 def read_scenario(source: Mapping[str, Any], folder: Path, name: str) -> Scenario:

@@ -142,7 +142,7 @@ def replay(
     """
     bag = BagReader(path)
     try:
-        topics = _topics(bag, remap or {}, overrides.replaced)
+        topics = topics_of(bag, remap or {}, overrides.replaced)
         if REQUESTS not in topics and overrides.robot is None:
             raise DataError(f"{bag.path} is not by dynastar: name its robot with --robot")
         ticks = list(_ticks(bag, topics, overrides, progress))
@@ -159,7 +159,7 @@ def replay(
     )
 
 
-def _topics(bag: BagReader, remap: Mapping[str, str], replaced: Set[str]) -> dict[str, str]:
+def topics_of(bag: BagReader, remap: Mapping[str, str], replaced: Set[str]) -> dict[str, str]:
     """The recording's topics by the bridge's names; DataError where one is missing or ambiguous.
 
     Those in ``replaced`` are left out.
