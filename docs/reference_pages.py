@@ -23,7 +23,8 @@ MODULES = {
         *("ALGORITHMS", "PLANNERS", "Planner", "plan_by", "HeuristicConfig"),
         *("SearchGrid", "SearchResult", "smooth", "straighten", "segment_clear"),
     ),
-    "dynastar.io": ("save_ros_map", "load_ros_map", "load_scenarios", "write_json"),
+    "dynastar.check": ("check_robot", "Check", "Finding", "Passage"),
+    "dynastar.io": ("load_robot", "save_ros_map", "load_ros_map", "load_scenarios", "write_json"),
     "dynastar.metrics": ("Metrics", "measure"),
     "dynastar.viewer.figure": (
         *("draw_map", "draw_plan", "draw_world", "draw_mission", "draw_episode"),

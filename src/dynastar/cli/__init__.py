@@ -24,6 +24,7 @@ from dynastar.terminal import Printable
 COMMANDS = {
     "plan": "find a path on a map",
     "run": "drive a scenario in simulation",
+    "check": "check a robot, its map and a recording before it drives",
     "demo": "drive an example that comes with dynastar",
     "info": "what a map, a scenario or an episode holds",
     "view": "replay an episode in the browser",

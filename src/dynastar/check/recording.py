@@ -1,0 +1,162 @@
+"""What a recording says of a robot: when its scans and odometry came, and what is in them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.errors import DataError, InputError
+from dynastar.geometry import Pose2D, Twist, wrap_angle
+from dynastar.navigator import NavigatorConfig, RobotState
+from dynastar.navigator.latency_check import LatencyCheck
+from dynastar.navigator.readings import Readings
+from dynastar.robot import Robot
+from dynastar.ros.bag import BagReader
+from dynastar.ros.bridge import TAKES
+from dynastar.ros.incoming import pose_of, scan_of, seconds, twist_of
+from dynastar.ros.replay import COMMANDS, topics_of
+from dynastar.ros.transforms import Mount, Transforms
+
+Floats = npt.NDArray[np.float64]
+READ = "scan", "odom", "/tf", "/tf_static"
+
+
+@dataclass(frozen=True)
+class Stream:
+    """Messages of one kind: stamps (n,) and the times when they were recorded (n,), in seconds."""
+
+    stamps: Floats
+    recorded: Floats
+
+    @property
+    def gaps(self) -> Floats:
+        """Seconds from each stamp to the next (n - 1,)."""
+        return np.diff(self.stamps)
+
+
+@dataclass(frozen=True)
+class Recording:
+    """A recording measured against a robot and its settings.
+
+    ``beams``, ``fov``, ``range_min`` and ``range_max`` have a value for each scan. ``speeds`` (n, 2) are
+    those of the odometry, m/s and rad/s. ``hints`` are what the navigator's status would have said of the
+    readings, ``latency`` (s) is set if commands clearly acted later than declared. ``mount`` is where the
+    transforms have the lidar, with the direction of the middle of its scans.
+    """
+
+    scans: Stream
+    odometry: Stream
+    commands: Floats
+    beams: npt.NDArray[np.int64]
+    fov: Floats
+    range_min: Floats
+    range_max: Floats
+    speeds: Floats
+    hints: tuple[str, ...]
+    latency: float | None
+    mount: Pose2D | None
+
+
+def read_recording(
+    path: str | Path,
+    robot: Robot,
+    config: NavigatorConfig,
+    remap: Mapping[str, str] | None = None,
+) -> Recording:
+    """Measures a recording; DataError if it cannot be read or lacks scans or odometry.
+
+    ``remap`` gives the recording's names for the topics scan, odom and cmd_vel.
+    """
+    bag = BagReader(path)
+    collected = _Collected(robot, config)
+    try:
+        topics = topics_of(bag, remap or {}, set(TAKES) - set(READ))
+        names = {name: short for short, name in topics.items() if short in (*READ, COMMANDS)}
+        for topic, at, message in bag.messages(set(names)):
+            collected.take(names[topic], at, message)
+    finally:
+        bag.close()
+    return collected.recording(path)
+
+
+@dataclass
+class _Collected:
+    """What is collected message by message."""
+
+    robot: Robot
+    config: NavigatorConfig
+    stamps: dict[str, list[tuple[float, float]]] = field(
+        default_factory=lambda: {"scan": [], "odom": []}
+    )
+    scans: list[tuple[int, float, float, float]] = field(default_factory=list)
+    speeds: list[Twist] = field(default_factory=list)
+    commands: list[float] = field(default_factory=list)
+    hints: dict[str, None] = field(default_factory=dict)
+    state: RobotState | None = None
+    base: str = ""
+    mount: Pose2D | None = None
+
+    def __post_init__(self) -> None:
+        self.readings = Readings(self.robot, self.config)
+        self.acting = LatencyCheck(self.robot.limits, self.config.latency)
+        self.latency: float | None = None
+        self.transforms = Transforms()
+
+    def take(self, short: str, at: float, message: Any) -> None:
+        """Takes in a message that was recorded at a time (s)."""
+        if short == COMMANDS:
+            self._take_command(at, message)
+        elif short in ("/tf", "/tf_static"):
+            self.transforms.add(message, static=short.endswith("static"))
+        else:
+            self.stamps[short].append((seconds(message.header.stamp), at))
+            (self._take_odometry if short == "odom" else self._take_scan)(message)
+
+    def _take_command(self, at: float, message: Any) -> None:
+        self.commands.append(at)
+        if self.state is not None:
+            self.acting.note(self.state, twist_of(getattr(message, "twist", message)))
+            self.latency = self.acting.longer or self.latency
+
+    def _take_odometry(self, message: Any) -> None:
+        stamp, twist = seconds(message.header.stamp), twist_of(message.twist.twist)
+        self.speeds.append(twist)
+        self.state = RobotState(stamp, pose_of(message.pose.pose, "the odometry"), twist)
+        self.base = message.child_frame_id.lstrip("/")
+
+    def _take_scan(self, message: Any) -> None:
+        placed = self.transforms.planar(self.base, message.header.frame_id.lstrip("/"))
+        scan = scan_of(message, placed or Mount(self.robot.lidar.mount))
+        span = scan.angle_increment * max(len(scan.ranges) - 1, 0)
+        self.scans.append((len(scan.ranges), abs(span), scan.range_min, scan.range_max))
+        if placed is not None:
+            x, y, theta = placed.pose
+            self.mount = Pose2D(x, y, wrap_angle(theta + scan.angle_min + 0.5 * span))
+        try:
+            self.readings.interpreted(scan)
+        except InputError as error:
+            self.hints[str(error)] = None
+        self.hints |= dict.fromkeys(self.readings.hints)
+
+    def recording(self, path: str | Path) -> Recording:
+        """What was collected; DataError if there are fewer than two scans or odometry messages."""
+        for short, what in (("scan", "scans"), ("odom", "messages of odometry")):
+            if len(self.stamps[short]) < 2:
+                raise DataError(f"{path}: has {len(self.stamps[short])} {what}: expected 2 or more")
+        beams, fov, low, high = map(np.array, zip(*self.scans, strict=True))
+        return Recording(
+            Stream(*np.array(self.stamps["scan"]).T),
+            Stream(*np.array(self.stamps["odom"]).T),
+            np.array(self.commands),
+            beams,
+            fov,
+            low,
+            high,
+            np.array(self.speeds),
+            tuple(self.hints),
+            self.latency,
+            self.mount,
+        )
