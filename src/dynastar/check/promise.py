@@ -65,10 +65,11 @@ def hidden(robot: Robot, config: NavigatorConfig) -> Finding:
         advice = "Declare hidden_speed above 0 unless nobody walks there."
         return Finding("hidden people", "warning", text, advice, values)
     text = (
-        f"Somebody who steps out of unseen space at up to {speed:g} m/s finds the robot at rest; with "
-        f"what it sees ahead it drives about {fastest:.2f} m/s in the open for that."
+        f"Somebody who steps out of unseen space at up to {speed:g} m/s finds the robot at rest; "
     )
     if fastest >= robot.limits.v_max:
+        text += "what it sees ahead in the open allows v_max for that."
         return Finding("hidden people", "ok", text, "", values)
+    text += f"for that it drives about {fastest:.2f} m/s in the open, as it sees no farther."
     advice = "For more speed see farther, brake harder, or declare a smaller hidden_speed."
     return Finding("hidden people", "warning", text, advice, values)

@@ -13,7 +13,7 @@ PAGE = "report.html"
 STYLE = """\
 body { font: 16px/1.5 sans-serif; color: #22252b; max-width: 60rem; margin: 2rem auto; padding: 0 1rem }
 table { border-collapse: collapse } td, th { padding: .4rem .6rem; vertical-align: top; text-align: left }
-tr { border-top: 1px solid #e2e4e7 } img { max-width: 100% }
+tr { border-top: 1px solid #e2e4e7 } img { width: 100% }
 .ok { color: #00614a } .warning { color: #8a5a00 } .problem { color: #b00016 }
 .ok, .warning, .problem { font-weight: bold }"""
 CAPTIONS = {

@@ -92,7 +92,7 @@ def execute(arguments: argparse.Namespace) -> int:
         from dynastar.check.report import write_check
 
         name = arguments.scenario if arguments.robot is None else arguments.robot
-        page = write_check(check, folder, f"Check of {name}")
+        page = write_check(check, folder, f"Check of {path(str(name)).name}")
         print(f"report: {page.absolute().as_uri()}", file=sys.stderr)
     print(as_json(check.as_data()) if arguments.json else as_text(check))
     return 1 if check.level == "problem" else 0
