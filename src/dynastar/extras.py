@@ -12,6 +12,7 @@ EXTRAS = {
     "viewer": ("matplotlib",),
     "bench": ("matplotlib", "scipy"),
     "bags": ("rosbags",),
+    "tune": ("optuna", "matplotlib", "scipy"),
     "play": ("starlette", "uvicorn", "websockets", "tomli_w"),
     "pandas": ("pandas",),
     "ros": ("rclpy", "nav_msgs", "visualization_msgs", "diagnostic_msgs", "std_srvs"),

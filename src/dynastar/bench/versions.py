@@ -13,17 +13,17 @@ SHARED = ("missions", "selection")  # of bench, by which every table chooses and
 def version(*modules: str) -> str:
     """A digest of what the rows of a table depend on: the library and ``modules`` of bench.
 
-    With them go the modules that choose and run missions; cli, viewer and the rest of bench have no
+    With them go the modules that choose and run missions; cli, viewer, tune and the rest of bench have no
     influence on these rows.
     """
     package = Path(dynastar.__file__).parent
     named = [package / "bench" / f"{name}.py" for name in {*SHARED, *modules}]
-    return _digest([*_sources({"cli", "viewer", "bench"}), *named])
+    return _digest([*_sources({"cli", "viewer", "tune", "bench"}), *named])
 
 
 def code_version() -> str:
     """A digest of the library and all of bench: what the rows of a suite can depend on."""
-    return _digest(_sources({"cli", "viewer"}))
+    return _digest(_sources({"cli", "viewer", "tune"}))
 
 
 def controller_version(name: str) -> str:

@@ -1,7 +1,7 @@
 """Work on many jobs at once: in processes of this machine, or on a Dask cluster.
 
-``Workers`` says where: a number of processes, or the address of a cluster's scheduler. Each job runs
-on one thread, so that what it measures does not depend on the number of cores.
+``Workers`` says where: a number of processes, the processes of a ``pool``, or the address of a cluster's
+scheduler. Each job runs on one thread, so that what it measures does not depend on the number of cores.
 """
 
 import multiprocessing
@@ -10,7 +10,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from typing import Any
@@ -19,7 +19,7 @@ from tqdm import tqdm
 
 from dynastar.errors import DynastarError
 
-Workers = int | str
+Workers = int | str | Executor
 Row = dict[str, Any]
 
 SINGLE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
@@ -38,6 +38,8 @@ def completed(
         from dynastar.bench.remote import completed_remotely
 
         yield from completed_remotely(work, jobs, workers)
+    elif isinstance(workers, Executor):
+        yield from _submitted(workers, work, jobs)
     elif min(workers, len(jobs)) <= 1:
         yield from ((index, work(job)) for index, job in enumerate(jobs))
     else:
@@ -58,28 +60,44 @@ def spread(work: Callable[[Any], Row], jobs: Sequence[Any], workers: Workers) ->
 def _in_processes(
     work: Callable[[Any], Row], jobs: Sequence[Any], workers: int
 ) -> Iterator[tuple[int, Row]]:
+    with pool(workers) as executor:
+        yield from _submitted(executor, work, jobs)
+
+
+@contextmanager
+def pool(workers: int) -> Iterator[Executor]:
+    """Worker processes for several calls of ``completed``; leaving early ends them.
+
+    Raises DynastarError if one was killed.
+    """
     others = set(multiprocessing.active_children())
     context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(workers, context, initializer=settle)
+    executor = ProcessPoolExecutor(workers, context, initializer=settle)
     done = False
     try:
-        with _single_threaded():  # processes start when jobs are submitted
-            futures = {pool.submit(work, job): index for index, job in enumerate(jobs)}
-        for future in as_completed(futures):
-            yield futures[future], future.result()
+        yield executor
         done = True
     except BrokenProcessPool:
         raise DynastarError(
             "a worker process was killed (not enough memory?); fewer --workers need less"
         ) from None
     finally:
-        pool.shutdown(wait=False, cancel_futures=True)
+        executor.shutdown(wait=False, cancel_futures=True)
         while not done:  # nobody waits for the jobs that are under way
             children = set(multiprocessing.active_children()) - others
             for child in children:
                 child.kill()
                 child.join(timeout=1.0)
             done = not children
+
+
+def _submitted(
+    executor: Executor, work: Callable[[Any], Row], jobs: Sequence[Any]
+) -> Iterator[tuple[int, Row]]:
+    with _single_threaded():  # processes start when jobs are submitted
+        futures = {executor.submit(work, job): index for index, job in enumerate(jobs)}
+    for future in as_completed(futures):
+        yield futures[future], future.result()
 
 
 @contextmanager

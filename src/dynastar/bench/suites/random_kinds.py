@@ -164,9 +164,15 @@ KINDS: dict[str, Callable[[Robot, Random], StaticWorld]] = {
 
 
 def _layout(robot: Robot, random: Random) -> tuple[Layout, float]:
-    width, height, scale = ROBOT_SCALES[robot.name]
+    width, height, scale = ROBOT_SCALES.get(robot.name) or _scales(robot)
     stretch = random.uniform(0.85, 1.15, 2)
     return Layout(width * stretch[0], height * stretch[1], random), scale
+
+
+def _scales(robot: Robot) -> tuple[float, float, float]:
+    """The scales of another robot, by its size beside the Pioneer's, whose radius is 0.25 m."""
+    scale = max(0.6, robot.footprint.circumscribed / 0.25)
+    return 12.0 * scale, 9.0 * scale, scale
 
 
 def _ends(layout: Layout, robot: Robot) -> tuple[Point, Point]:

@@ -1,0 +1,88 @@
+"""``dynastar tune``: better settings for a robot, searched in simulated missions."""
+
+import argparse
+import os
+import sys
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Any
+
+from dynastar import io
+from dynastar.cli.outputs import make_folder
+from dynastar.cli.parsing import count, number, path, seed
+from dynastar.errors import InputError
+from dynastar.extras import require
+
+DESCRIPTION = (
+    "Searches better settings for a robot by driving simulated missions, and says whether they "
+    "are better than the default."
+)
+
+EXAMPLES = """\
+examples:
+  dynastar tune --hours 0.5
+  dynastar tune --robot my_robot.toml --hours 2 --out out/tune
+  dynastar tune --suite random,people,barn --data data --dask tcp://host:8786
+
+Every setting drives the same worlds; poor ones are stopped early. The best one is compared with the
+default in other worlds, of report seeds. Writes tuned.toml, report.html and state.json into DIR. A search
+that was stopped goes on when the command is given again. The robot's file has the keys of a scenario:
+[robot], [sensor], [navigator]. `random` and `people` are drawn for it, other suites have robots of their
+own. The bounds of the no-contact guarantee are never changed."""
+
+FEWEST_HOURS = 0.001
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command."""
+    parser.add_argument("--robot", type=path, metavar="FILE.toml", help="tune for this robot")
+    parser.add_argument(
+        "--suite", default="random,people", metavar="NAMES", help="default random,people"
+    )
+    parser.add_argument(
+        "--data", type=path, metavar="DIR", help="of the suites (default $DYNASTAR_DATA)"
+    )
+    parser.add_argument(
+        "--hours", type=number, default=2.0, metavar="H", help="time in all (default 2)"
+    )
+    parser.add_argument(
+        "--settings", type=count, metavar="N", help="stop the search after N settings"
+    )
+    parser.add_argument(
+        "--worlds", type=count, default=20, metavar="N", help="of each suite (default 20)"
+    )
+    parser.add_argument("--seed", type=seed, default=0, metavar="N", help="default 0, below 10000")
+    parser.add_argument("--workers", type=count, metavar="N", help="processes (default: all cores)")
+    parser.add_argument("--dask", metavar="ADDRESS", help="run on this Dask cluster instead")
+    parser.add_argument("--out", type=path, metavar="PATH", help="default out/tune")
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Searches settings."""
+    require("tune", "tuning needs")
+    from dynastar.bench.workers import pool
+    from dynastar.cli.compiling import prepare
+    from dynastar.navigator import NavigatorConfig
+    from dynastar.tune.search import Plan
+    from dynastar.tune.tuning import Task, tune
+
+    if not arguments.hours >= FEWEST_HOURS:
+        raise InputError(f"--hours {arguments.hours:g}: expected {FEWEST_HOURS:g} or more")
+    robot, config = None, NavigatorConfig()
+    if arguments.robot is not None:
+        robot, config = io.load_robot(arguments.robot)
+    names = tuple(dict.fromkeys(arguments.suite.split(",")))
+    task = Task(names, arguments.worlds, robot, config, arguments.data, arguments.seed)
+    folder = make_folder("--out", arguments.out or Path("out/tune"))
+    processes = arguments.workers or os.cpu_count() or 1
+    at_once = max(8, 2 * processes)
+    plan = Plan(3600.0 * arguments.hours, arguments.settings, at_once, arguments.seed)
+    prepare()
+    workers: Any = nullcontext(arguments.dask or processes)
+    if arguments.dask is None and processes > 1:
+        workers = pool(processes)
+    with workers as opened:
+        found = tune(task, plan, folder, opened, lambda line: print(line, file=sys.stderr))
+    print(found.words)
+    print(f"results written to {folder}", file=sys.stderr)
+    return 0

@@ -1,0 +1,1 @@
+"""Tuning: settings searched over simulated missions, and a robot measured from a recording."""

@@ -1,0 +1,43 @@
+"""TOML with comments."""
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+
+def toml_text(table: Mapping[str, Any], comments: Mapping[str, str], head: Sequence[str]) -> str:
+    """Nested tables as TOML; ``comments`` by dotted key stand above it, ``head`` leads the file."""
+    lines = [f"# {line}".rstrip() for line in head]
+    _add(table, "", comments, lines)
+    return "\n".join(lines) + "\n"
+
+
+def _add(
+    table: Mapping[str, Any], where: str, comments: Mapping[str, str], lines: list[str]
+) -> None:
+    plain = {key: value for key, value in table.items() if not isinstance(value, Mapping)}
+    if where and plain:
+        lines += ["", f"[{where}]"]
+    for key, value in plain.items():
+        dotted = f"{where}.{key}" if where else key
+        lines += [f"# {line}" for line in comments.get(dotted, "").splitlines()]
+        lines.append(f"{key} = {_value(value)}")
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            _add(value, f"{where}.{key}" if where else key, comments, lines)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, float):
+        if not math.isfinite(value):
+            return "nan" if math.isnan(value) else ("inf" if value > 0.0 else "-inf")
+        text = f"{value:.6g}"
+        return text if set(text) & set(".e") else f"{text}.0"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_value, value))}]"
+    return str(value)

@@ -1,0 +1,94 @@
+"""``tune``: a search from its options to its results."""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from dynastar.bench.missions import Options
+from dynastar.bench.runner import Job, run_job
+from dynastar.bench.selection import REPORT_SEEDS
+from dynastar.bench.versions import code_version
+from dynastar.bench.workers import Workers, spread
+from dynastar.config import shown
+from dynastar.errors import InputError
+from dynastar.navigator import NavigatorConfig
+from dynastar.robot import Robot
+from dynastar.tune.objective import MOST_WORLDS
+from dynastar.tune.results import write_results
+from dynastar.tune.search import Plan, Say, Search
+from dynastar.tune.space import OF_ROBOT, SPACE, Values, settings_table, start_values
+from dynastar.tune.state import Row, kept, load_state
+from dynastar.tune.verdict import Verdict, judged
+from dynastar.tune.worlds import RobotWorlds, World, suites_of, worlds_of
+
+FINAL = 4  # times the worlds of the search, at most, for the final comparison
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is tuned: the suites, ``worlds`` of each, and the user's robot with its declared settings."""
+
+    suites: tuple[str, ...] = ("random", "people")
+    worlds: int = 20
+    robot: Robot | None = None
+    config: NavigatorConfig = NavigatorConfig()
+    data: Path | None = None
+    seed: int = 0
+
+
+def tune(task: Task, plan: Plan, folder: Path, workers: Workers = 1, say: Say = print) -> Verdict:
+    """Searches better settings for a task, and writes state, tuned.toml and report.html to ``folder``.
+
+    A search that was stopped goes on where it ended. Raises InputError for a folder with another search,
+    and MissingPackage without Optuna.
+    """
+    if not 0 <= task.seed < REPORT_SEEDS:
+        raise InputError(f"the seed is {task.seed}: the search takes those below {REPORT_SEEDS}")
+    if task.worlds * len(task.suites) > MOST_WORLDS:
+        raise InputError(f"the search takes at most {MOST_WORLDS} worlds: fewer --worlds or suites")
+    space = SPACE if task.robot is None else SPACE + OF_ROBOT
+    suites = suites_of(task.suites, task.robot, task.config)
+    state = load_state(folder, _asked(task, suites))
+    options = Options(seed=task.seed, data=task.data)
+    worlds = list(worlds_of(suites, options, count=task.worlds))
+    if not worlds:
+        raise InputError("the suites have no world to drive")
+    say(f"{len(worlds)} worlds of {', '.join(suites)}, {len(space)} parameters")
+    drive = partial(driven, options, workers)
+    search = Search(state, folder, start_values(space, task.config), plan, drive, say)
+    search.run(space, worlds)
+    final = options._replace(seed=REPORT_SEEDS + task.seed)
+    search.judge(worlds_of(suites, final, after=task.worlds), FINAL * len(worlds))
+    found = judged(state)
+    write_results(folder, state, space, found, task.robot)
+    return found
+
+
+def driven(
+    options: Options, workers: Workers, worlds: Sequence[World], values: Values
+) -> list[Row]:
+    """The rows of a setting in worlds of one seed, in their order."""
+    options = options._replace(settings=settings_table(values), seed=worlds[0].seed)
+    jobs = []
+    for world in worlds:
+        suite = world.suite
+        if isinstance(suite, RobotWorlds):
+            suite = suite.limited({k: v for k, v in values.items() if k.startswith("limits.")})
+        jobs.append(Job(suite, world.mission, 0, options.controller))
+    rows = spread(partial(run_job, options), jobs, workers)
+    return [kept(row, world.name) for world, row in zip(worlds, rows, strict=True)]
+
+
+def _asked(task: Task, suites: dict[str, "str | RobotWorlds"]) -> dict[str, object]:
+    """What a search depends on, by the names of the options."""
+    robots = "".join(one.declared for one in suites.values() if isinstance(one, RobotWorlds))
+    return {
+        "suite": list(task.suites),
+        "worlds": task.worlds,
+        "robot": hashlib.sha256(f"{robots}{task.config}".encode()).hexdigest()[:16],
+        "seed": task.seed,
+        "data": shown(str(task.data)),
+        "version of dynastar": code_version(),
+    }
