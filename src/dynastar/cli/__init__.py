@@ -30,7 +30,7 @@ COMMANDS = {
     "view": "replay an episode in the browser",
     "schema": "the JSON Schema of scenario files, for editors",
     "bench": "run suites of missions, compare results",
-    "tune": "search better settings for a robot",
+    "tune": "search better settings for a robot, or measure it from a recording",
     "paper": "remake the paper's tables and figures",
     "ros": "the navigator as a ROS 2 node",
     "ros-guard": "a guard for the commands of another controller, as a ROS 2 node",

@@ -1,4 +1,4 @@
-"""``dynastar tune``: better settings for a robot, searched in simulated missions."""
+"""``dynastar tune``: better settings for a robot, or the robot itself from a recording."""
 
 import argparse
 import os
@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from dynastar import io
-from dynastar.cli.outputs import make_folder
+from dynastar.cli.outputs import check_file, make_folder
 from dynastar.cli.parsing import count, number, path, seed
 from dynastar.errors import InputError
 from dynastar.extras import require
 
 DESCRIPTION = (
     "Searches better settings for a robot by driving simulated missions, and says whether they "
-    "are better than the default."
+    "are better than the default. With --bag: measures the robot from a recording."
 )
 
 EXAMPLES = """\
@@ -23,6 +23,7 @@ examples:
   dynastar tune --hours 0.5
   dynastar tune --robot my_robot.toml --hours 2 --out out/tune
   dynastar tune --suite random,people,barn --data data --dask tcp://host:8786
+  dynastar tune --bag drive.mcap --out my_robot.toml
 
 Every setting drives the same worlds; poor ones are stopped early. The best one is compared with the
 default in other worlds, of report seeds. Writes tuned.toml, report.html and state.json into DIR. A search
@@ -31,6 +32,7 @@ that was stopped goes on when the command is given again. The robot's file has t
 own. The bounds of the no-contact guarantee are never changed."""
 
 FEWEST_HOURS = 0.001
+TOPICS = ("scan", "odom", "cmd_vel")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -54,11 +56,61 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=seed, default=0, metavar="N", help="default 0, below 10000")
     parser.add_argument("--workers", type=count, metavar="N", help="processes (default: all cores)")
     parser.add_argument("--dask", metavar="ADDRESS", help="run on this Dask cluster instead")
-    parser.add_argument("--out", type=path, metavar="PATH", help="default out/tune")
+    parser.add_argument(
+        "--bag",
+        type=path,
+        metavar="BAG",
+        help="measure the robot from this recording instead; --robot then tells the footprint",
+    )
+    parser.add_argument(
+        "--topic",
+        action="append",
+        default=[],
+        metavar="NAME=TOPIC",
+        help="of --bag: the recording's topic for scan, odom or cmd_vel; repeatable",
+    )
+    parser.add_argument(
+        "--out", type=path, metavar="PATH", help="default out/tune, with --bag robot.toml"
+    )
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Searches settings."""
+    """Searches settings, or measures a robot."""
+    if arguments.bag is not None:
+        return _measure(arguments)
+    return _search(arguments)
+
+
+def _measure(arguments: argparse.Namespace) -> int:
+    require("bags", "recordings need")
+    from dynastar.tune.measured import measured, robot_toml
+    from dynastar.tune.recording import read_drive
+
+    file = check_file("--out", arguments.out or Path("robot.toml"))
+    assert file is not None
+    robot = None if arguments.robot is None else io.load_robot(arguments.robot)[0]
+    found = measured(read_drive(arguments.bag, _topics(arguments.topic)), robot)
+    with io.written_aside(file) as aside:
+        aside.write_text(robot_toml(found, Path(arguments.bag).name), encoding="utf-8")
+    print(found.words())
+    print(f"the robot is written to {file}", file=sys.stderr)
+    return 0
+
+
+def _topics(pairs: list[str]) -> dict[str, str]:
+    """The table that ``NAME=TOPIC`` pairs stand for; InputError for one that is none."""
+    table = {}
+    for pair in pairs:
+        name, equals, topic = pair.partition("=")
+        if not equals or not topic or name not in TOPICS:
+            raise InputError(
+                f"--topic {pair!r:.80}: expected NAME=TOPIC with NAME one of {', '.join(TOPICS)}"
+            )
+        table[name] = topic
+    return table
+
+
+def _search(arguments: argparse.Namespace) -> int:
     require("tune", "tuning needs")
     from dynastar.bench.workers import pool
     from dynastar.cli.compiling import prepare

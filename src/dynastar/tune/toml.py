@@ -40,4 +40,6 @@ def _value(value: Any) -> str:
         return text if set(text) & set(".e") else f"{text}.0"
     if isinstance(value, list | tuple):
         return f"[{', '.join(map(_value, value))}]"
+    if isinstance(value, Mapping):
+        return f"{{ {', '.join(f'{key} = {_value(one)}' for key, one in value.items())} }}"
     return str(value)

@@ -1,0 +1,219 @@
+"""The robot that a recording shows: every estimate with its evidence, as TOML to use."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from dynastar.robot import ROBOTS, Robot
+from dynastar.tune.estimate import Estimate, untold
+from dynastar.tune.recording import Drive
+from dynastar.tune.response import (
+    Axis,
+    accelerations,
+    dead_band,
+    gain,
+    latency,
+    odometry_gain,
+    onsets_of,
+)
+from dynastar.tune.senses import OwnPart, own_parts, range_error, readings
+from dynastar.tune.toml import toml_text
+
+Floats = npt.NDArray[np.float64]
+
+BODY = 0.1  # m beyond the footprint that a part of the robot may reach
+NEVER_TOLD = (
+    "footprint, v_max and omega_max, constant errors of the ranges, pose_error and heading_error, where "
+    "the lidar is mounted, and slip of the wheels"
+)
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What a recording tells: estimates by name, own parts in the lidar's view, and their evidence."""
+
+    estimates: Mapping[str, Estimate]
+    own: tuple[OwnPart, ...]
+    own_words: str
+    robot: Robot | None
+
+    def words(self) -> str:
+        """All of it as lines of text."""
+        lines = [estimate.words() for estimate in self.estimates.values()]
+        lines.append(self.own_words)
+        for part in self.own:
+            lines.append(
+                f"own part: {part.angle:.3g} rad, {part.distance:.3g} m, {part.readings} readings"
+            )
+        return "\n".join([*lines, f"no recording tells: {NEVER_TOLD}"])
+
+
+def measured(drive: Drive, robot: Robot | None = None) -> Measured:
+    """The estimates from a drive; ``robot`` tells the footprint where the recording does not."""
+    robot = robot or drive.robot
+    v, omega = _axes(drive)
+    onsets = [*onsets_of(v), *onsets_of(omega)]
+    delay = latency(onsets)
+    delays = (min(one.lower - one.unseen for one in onsets), delay.high) if delay.told else None
+    found = [delay]
+    for axis, travelled in ((v, _forward(drive.poses)), (omega, _turned(drive.poses))):
+        reported = odometry_gain(axis, travelled)
+        scale = 1.0  # unless the recording shows another
+        if reported.value is not None and not reported.low <= 1.0 <= reported.high:
+            scale = reported.value
+        true = Axis(
+            axis.name, axis.unit, axis.command_times, axis.commands, axis.times, axis.speeds / scale
+        )
+        response = gain(true)
+        found += [reported, response]
+        found += accelerations(true, response, delays)
+        found.append(dead_band(true, delay))
+    found += [_period(drive), range_error(drive.scans, _resting(drive, v, omega))]
+    found.append(readings(drive.scans))
+    estimates = {estimate.name: estimate for estimate in found}
+    reach = None
+    if robot is not None:
+        mount = math.hypot(robot.lidar.x, robot.lidar.y)
+        reach = robot.footprint.circumscribed + mount + BODY
+    error = estimates["range_error"]
+    way = float(np.abs(np.diff(_forward(drive.poses))).sum())
+    own, words = own_parts(drive.scans, way, reach, error.high if error.told else 0.05)
+    return Measured(estimates, tuple(own), words, robot)
+
+
+def robot_toml(found: Measured, source: str) -> str:
+    """The robot as a file for ``--robot``, each value with its evidence as a comment.
+
+    Of a range the end that is safe is written: the longest latency, the weakest braking.
+    """
+    estimates, robot = found.estimates, found.robot
+    names = {estimate.name: estimate for estimate in estimates.values()}
+    base = robot.name if robot is not None and robot.name in ROBOTS else "pioneer3dx"
+    table: dict[str, Any] = {
+        "latency": _end(names["latency"], "high"),
+        "robot": {
+            "base": base,
+            **_footprint(robot),
+            "limits": {
+                "v_accel": names["v_accel"].value,
+                "omega_accel": names["omega_accel"].value,
+                "v_brake": _end(names["v_brake"], "low"),
+                "omega_brake": _end(names["omega_brake"], "low"),
+                "v_least": _end(names["deadband_v"], "high"),
+                "omega_least": _end(names["deadband_omega"], "high"),
+            },
+        },
+        "sensor": {"beams": _whole(names["beams"].value)},
+        "drive": {name: names[name].value for name in ("gain_v", "gain_omega")},
+        "lidar": {"posts": [vars(part) for part in found.own] or None},
+        "navigator": {
+            "period": names["period"].value,
+            "range_error": _end(names["range_error"], "high"),
+            "drive_error": _drive_error(names["gain_v"], names["gain_omega"]),
+        },
+    }
+    comments = {_place(name): estimate.words() for name, estimate in names.items()}
+    comments["navigator.drive_error"] = "how much faster than told the drive is, from the gains"
+    comments["lidar.posts"] = found.own_words
+    untold_lines = [one.words() for one in names.values() if not one.told]
+    head = [
+        f"The robot as {source} shows it, by dynastar tune --bag.",
+        "Above each value: the estimate, its range, and what it is from.",
+        "What is not here is taken from the base: check it, and declare what is true.",
+        f"No recording tells: {NEVER_TOLD}.",
+        *untold_lines,
+    ]
+    if robot is None:
+        head.append(f"The base {base} is a guess, for the footprint: name your own.")
+    return toml_text(_without_none(table), comments, head)
+
+
+def _axes(drive: Drive) -> tuple[Axis, Axis]:
+    """Both speeds, v first."""
+    times, commands = drive.command_times, drive.commands
+    v, omega = (
+        Axis(name, unit, times, told, drive.times, speeds)
+        for name, unit, told, speeds in zip(
+            ("v", "omega"), ("m/s", "rad/s"), commands.T, drive.twists.T, strict=True
+        )
+    )
+    return v, omega
+
+
+def _forward(poses: Floats) -> Floats:
+    """How far (m) the robot has moved along its heading, at each pose."""
+    steps, headings = np.diff(poses[:, :2], axis=0), np.unwrap(poses[:, 2])
+    middle = 0.5 * (headings[1:] + headings[:-1])
+    along = steps[:, 0] * np.cos(middle) + steps[:, 1] * np.sin(middle)
+    return np.concatenate([[0.0], np.cumsum(along)])
+
+
+def _turned(poses: Floats) -> Floats:
+    return np.unwrap(poses[:, 2])
+
+
+def _resting(drive: Drive, v: Axis, omega: Axis) -> npt.NDArray[np.bool_]:
+    """Whether the robot was at rest at each scan."""
+    still = (np.abs(v.speeds) <= v.motion) & (np.abs(omega.speeds) <= omega.motion)
+    places = np.clip(np.searchsorted(drive.times, drive.scan_times), 1, len(drive.times) - 1)
+    return np.asarray(still[places] & still[places - 1])
+
+
+def _period(drive: Drive) -> Estimate:
+    steps = np.diff(drive.command_times)
+    if len(steps) < 10:
+        return untold("period", "s", "it has fewer than 11 commands", len(steps))
+    low, high = np.percentile(steps, [5.0, 95.0])
+    evidence = "time between two commands; the range has 90 % of them"
+    value = float(np.median(steps))
+    return Estimate("period", "s", value, float(low), float(high), len(steps), evidence)
+
+
+def _drive_error(*gains: Estimate) -> float | None:
+    """How much more than told the drive does at most, as a fraction."""
+    told = [one.high - 1.0 for one in gains if one.told]
+    return min(max(0.0, *told), 0.5) if len(told) == len(gains) else None
+
+
+def _end(estimate: Estimate, end: str) -> float | None:
+    return getattr(estimate, end) if estimate.told else None
+
+
+def _whole(value: float | None) -> int | None:
+    return None if value is None else round(value)
+
+
+def _footprint(robot: Robot | None) -> dict[str, Any]:
+    if robot is None:
+        return {}
+    if robot.footprint.is_disc:
+        return {"radius": robot.footprint.circumscribed}
+    return {"polygon": robot.footprint.vertices.tolist()}
+
+
+def _place(name: str) -> str:
+    """The key in the file under which an estimate stands."""
+    moved = {
+        "latency": "latency",
+        "beams": "sensor.beams",
+        "deadband_v": "robot.limits.v_least",
+        "deadband_omega": "robot.limits.omega_least",
+        "period": "navigator.period",
+        "range_error": "navigator.range_error",
+    }
+    if name in moved:
+        return moved[name]
+    return f"drive.{name}" if name.startswith("gain") else f"robot.limits.{name}"
+
+
+def _without_none(table: Mapping[str, Any]) -> dict[str, Any]:
+    kept: dict[str, Any] = {}
+    for key, value in table.items():
+        value = _without_none(value) if isinstance(value, Mapping) else value
+        if value is not None and value != {}:
+            kept[key] = value
+    return kept

@@ -1,0 +1,190 @@
+"""Robots of known truth, driven in simulation and recorded: every estimate holds the truth."""
+
+import math
+import tomllib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from driving import room
+from dynastar import io
+from dynastar.cli import main
+from dynastar.errors import DataError
+from dynastar.geometry import Goal
+from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot
+from dynastar.simulation import Noise, Scenario
+from dynastar.simulation.imperfections import ControlLoop, Drivetrain, LidarDriver, Odometry, Post
+from dynastar.tune.measured import measured, robot_toml
+from dynastar.tune.recording import read_drive
+from scripted_drive import by_hand, record
+
+pytest.importorskip("rosbags")
+
+LIMITS = Limits(0.6, 1.5, 0.5, 2.0, 0.8, 3.0, v_min=-0.6)
+ROBOT = Robot("mine", LIMITS, Footprint.disc(0.25), Lidar(180, math.tau, 0.0, 6.0))
+PLAIN = Scenario("plain", room(16.0, 12.0), ROBOT, (10.0, 6.0, 0.3), (Goal(6.0, 3.0),))
+HARDWARE = replace(
+    PLAIN,
+    latency=0.12,
+    drive=Drivetrain(gain_v=0.93, gain_omega=1.06, deadband_v=0.05, deadband_omega=0.12),
+    noise=Noise(range_bound=0.03),
+    lidar=LidarDriver(posts=(Post(2.0, 0.2, 3), Post(-1.0, 0.22, 1))),
+)
+SLOPPY = replace(
+    PLAIN,
+    latency=0.2,
+    drive=Drivetrain(gain_v=1.1, latency_jitter=0.08, deadband_v=0.03, slip=0.0),
+    odometry=Odometry(gain_v=0.9, gain_omega=1.1),
+    noise=Noise(range_bound=0.01),
+    lidar=LidarDriver(readings=(170, 190)),
+    robot=replace(ROBOT, limits=LIMITS._replace(v_accel=1.5, v_brake=0.4, omega_accel=1.0)),
+)
+SLOW = {"slow_v": (0.02, 0.04, 0.06, 0.1), "slow_omega": (0.05, 0.1, 0.15)}
+
+
+def truth_of(scenario):
+    drive, odometry, limits = scenario.drive, scenario.odometry, scenario.robot.limits
+    return {
+        "latency": scenario.latency,
+        "gain_v": drive.gain_v,
+        "gain_omega": drive.gain_omega,
+        "odometry_gain_v": odometry.gain_v,
+        "odometry_gain_omega": odometry.gain_omega,
+        "deadband_v": drive.deadband_v,
+        "deadband_omega": drive.deadband_omega,
+        "v_accel": limits.v_accel,
+        "omega_accel": limits.omega_accel,
+        "v_brake": limits.v_brake,
+        "omega_brake": limits.omega_brake,
+        "period": 0.05,
+        "range_error": scenario.noise.range_bound,
+        "beams": scenario.robot.lidar.beams,
+    }
+
+
+@pytest.fixture(scope="module")
+def drives(tmp_path_factory):
+    """Each scenario's recording and what it tells."""
+    found = {}
+    for scenario in (replace(PLAIN, latency=0.05), HARDWARE, SLOPPY):
+        folder = tmp_path_factory.mktemp("drive") / "bag"
+        record(folder, scenario, by_hand(0.5, 1.2, **SLOW), stamped=scenario is SLOPPY)
+        found[len(found)] = scenario, folder, measured(read_drive(folder), scenario.robot)
+    return found
+
+
+@pytest.mark.parametrize("number", [0, 1, 2])
+def test_every_parameter_is_within_its_stated_error(drives, number):
+    scenario, _, found = drives[number]
+    truth = truth_of(scenario)
+    assert set(truth) == set(found.estimates)
+    for name, true in truth.items():
+        estimate = found.estimates[name]
+        if name.startswith("deadband") and true == 0.0:
+            assert not estimate.told, name
+            continue
+        if name == "range_error" and scenario is SLOPPY:  # no two scans have the same beams
+            assert "no rest of 10 scans with the same beams" in estimate.evidence
+            continue
+        assert estimate.told, estimate.words()
+        assert estimate.low - 1e-9 <= true <= estimate.high + 1e-9, (true, estimate.words())
+
+
+@pytest.mark.parametrize("number", [0, 1, 2])
+def test_the_stated_errors_are_small_enough_to_use(drives, number):
+    scenario, _, found = drives[number]
+    for name, true in truth_of(scenario).items():
+        estimate = found.estimates[name]
+        if estimate.told and name not in ("period", "beams"):
+            width = estimate.high - estimate.low
+            allowed = {"latency": 0.15, "range_error": 0.05}.get(name, 0.3 * true)
+            assert width <= allowed + 0.06 * name.startswith("deadband"), estimate.words()
+
+
+def test_parts_of_the_robot_in_view_are_found(drives):
+    scenario, _, found = drives[1]
+    assert len(found.own) == 2
+    posts = sorted(scenario.lidar.posts, key=lambda post: post.angle)
+    for part, post in zip(sorted(found.own, key=lambda part: part.angle), posts, strict=True):
+        assert part.angle == pytest.approx(post.angle, abs=math.tau / 180)
+        assert part.distance == pytest.approx(post.distance, abs=0.01)
+        assert part.readings == post.readings
+    assert drives[0][2].own == drives[2][2].own == ()
+
+
+def test_the_number_of_readings_varies(drives):
+    beams = drives[2][2].estimates["beams"]
+    assert (beams.low, beams.high) == (170, 190)
+    assert "varies" in beams.evidence
+
+
+def test_the_file_is_a_robot_with_the_safe_ends(drives, tmp_path):
+    scenario, _, found = drives[1]
+    text = robot_toml(found, "bag")
+    file = tmp_path / "robot.toml"
+    file.write_text(text)
+    robot, config = io.load_robot(file)
+    assert robot.footprint.circumscribed == 0.25
+    assert robot.limits.v_brake <= LIMITS.v_brake
+    assert robot.limits.v_least >= scenario.drive.deadband_v
+    assert scenario.latency <= config.latency <= scenario.latency + 0.06
+    assert scenario.noise.range_bound <= config.range_error
+    assert config.drive_error >= 0.06
+    assert "# gain_v: 0.93" in text
+    assert len(tomllib.loads(text)["lidar"]["posts"]) == 2
+    assert "No recording tells: footprint" in text
+
+
+def test_what_a_recording_lacks_is_said(tmp_path):
+    record(tmp_path / "rest", PLAIN, [(0.0, 0.0, 2.0), (0.3, 0.0, 2.0)])
+    found = measured(read_drive(tmp_path / "rest"))
+    told = {name for name, estimate in found.estimates.items() if estimate.told}
+    assert told == {"period", "range_error", "beams"}
+    assert "1 changes of the command" in found.estimates["latency"].evidence
+    text = robot_toml(found, "rest")
+    assert "# latency: the recording cannot tell: it has" in text
+    assert "is a guess" in text
+    assert set(tomllib.loads(text)) == {"robot", "sensor", "navigator"}
+
+
+def test_a_mission_of_the_navigator_tells_what_it_can(tmp_path):
+    from dynastar.ros.recording import run_recorded
+
+    scenario = replace(
+        HARDWARE,
+        robot=ROBOTS["pioneer3dx"],
+        grid=room(),
+        start=(1.0, 3.0, 0.0),
+        goals=(Goal(7.0, 3.0),),
+        lidar=LidarDriver(),
+        loop=ControlLoop(),
+        navigator={"period": 0.1, "drive_error": 0.1},
+    )
+    run_recorded(scenario, tmp_path / "bag")
+    found = measured(read_drive(tmp_path / "bag"))
+    assert found.robot.name == "pioneer3dx"
+    truth = truth_of(scenario) | {"period": 0.1}
+    for name, estimate in found.estimates.items():
+        if estimate.told and not name.startswith("deadband"):
+            assert estimate.low - 1e-9 <= truth[name] <= estimate.high + 1e-9, estimate.words()
+    assert found.estimates["beams"].told
+
+
+def test_the_command_writes_the_file_and_names_what_is_missing(drives, tmp_path, capsys):
+    out = tmp_path / "robot.toml"
+    assert main(["tune", "--bag", str(drives[1][1]), "--out", str(out)]) == 0
+    assert "latency: 0.1" in capsys.readouterr().out
+    assert "[robot.limits]" in out.read_text("utf-8")
+    bag = str(drives[1][1])
+    assert main(["tune", "--bag", bag, "--topic", "cmd_vel=/base/cmd", "--out", str(out)]) == 2
+    assert "give --topic cmd_vel=TOPIC" in capsys.readouterr().err
+    assert main(["tune", "--bag", bag, "--topic", "speed=/cmd_vel"]) == 2
+    assert "NAME one of scan, odom, cmd_vel" in capsys.readouterr().err
+    with pytest.raises(DataError, match="no such recording"):
+        read_drive(tmp_path / "nothing")
+
+
+def test_a_step_of_the_command_is_no_motion_by_itself(drives):
+    for _, _, found in drives.values():
+        assert np.isfinite([estimate.low for estimate in found.estimates.values()]).all()
