@@ -45,7 +45,7 @@ def test_a_search_that_was_killed_goes_on(tmp_path, capsys):
             assert process.poll() is None
             time.sleep(0.01)
         process.kill()
-    assert sum(len(trial["rows"]) for trial in ended(tmp_path / "out")["trials"]) == 16
+    assert sum(len(trial["rows"]) for trial in ended(tmp_path / "out")["trials"]) == 20
     (tmp_path / "again").touch()
     assert main(["tune", *words, str(tmp_path / "out")]) == 0
     assert "better than the default" in capsys.readouterr().out

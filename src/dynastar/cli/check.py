@@ -40,6 +40,8 @@ and check.json into DIR."""
 WIDTH = 100  # letters of a line
 LEVEL_WIDTH = 9
 
+TOPICS = ("scan", "odom", "cmd_vel", "tf", "tf_static")
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the command."""
@@ -63,7 +65,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME=TOPIC",
-        help="the recording's topic for scan, odom, tf; repeatable",
+        help="the recording's topic for scan, odom, cmd_vel, tf; repeatable",
     )
     parser.add_argument(
         "--no-time", action="store_true", help="do not measure how long a tick takes here"
@@ -85,9 +87,8 @@ def execute(arguments: argparse.Namespace) -> int:
     folder = None if arguments.out is None else make_folder("--out", arguments.out)
     if not arguments.no_time:
         prepare()
-    check = check_robot(
-        robot, config, grid, arguments.bag, topic_table(arguments.topic), not arguments.no_time
-    )
+    topics = topic_table(arguments.topic, TOPICS)
+    check = check_robot(robot, config, grid, arguments.bag, topics, not arguments.no_time)
     if folder is not None:
         from dynastar.check.report import write_check
 

@@ -2,7 +2,7 @@
 
 import argparse
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -84,6 +84,7 @@ def execute(arguments: argparse.Namespace) -> int:
     from dynastar.bench.settings import parsed
     from dynastar.cli.compiling import prepare
     from dynastar.robot import ROBOTS
+    from dynastar.ros.bridge import TAKES
     from dynastar.ros.replay import Overrides, replay
 
     robot = None if arguments.robot is None else choose(arguments.robot, ROBOTS, "robot")
@@ -96,7 +97,7 @@ def execute(arguments: argparse.Namespace) -> int:
         words = [arguments.preset, *arguments.set]
         name = " ".join(word for word in words if word is not None)
         runs[name] = as_it_is._replace(preset=arguments.preset, settings=settings)
-    remap = topic_table(arguments.topic)
+    remap = topic_table(arguments.topic, [name.strip("/") for name in TAKES])
     bag = Path(arguments.bag)
     folder = make_folder("--out", arguments.out or Path("out", f"replay-{bag.stem or 'bag'}"))
     prepare()
@@ -127,11 +128,8 @@ def _goal(numbers: list[float]) -> "Goal":
     return Goal(*numbers)
 
 
-def topic_table(pairs: list[str]) -> dict[str, str]:
-    """The table that ``NAME=TOPIC`` pairs stand for; InputError for one that is none."""
-    from dynastar.ros.bridge import TAKES
-
-    names = [name.strip("/") for name in TAKES]
+def topic_table(pairs: list[str], names: Sequence[str]) -> dict[str, str]:
+    """The table that ``NAME=TOPIC`` pairs stand for; InputError for a name that is not in ``names``."""
     table = {}
     for pair in pairs:
         name, equals, topic = pair.partition("=")

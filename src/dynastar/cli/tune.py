@@ -83,31 +83,19 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def _measure(arguments: argparse.Namespace) -> int:
     require("bags", "recordings need")
+    from dynastar.cli.replay import topic_table
     from dynastar.tune.measured import measured, robot_toml
     from dynastar.tune.recording import read_drive
 
     file = check_file("--out", arguments.out or Path("robot.toml"))
     assert file is not None
     robot = None if arguments.robot is None else io.load_robot(arguments.robot)[0]
-    found = measured(read_drive(arguments.bag, _topics(arguments.topic)), robot)
+    found = measured(read_drive(arguments.bag, topic_table(arguments.topic, TOPICS)), robot)
     with io.written_aside(file) as aside:
         aside.write_text(robot_toml(found, Path(arguments.bag).name), encoding="utf-8")
     print(found.words())
     print(f"the robot is written to {file}", file=sys.stderr)
     return 0
-
-
-def _topics(pairs: list[str]) -> dict[str, str]:
-    """The table that ``NAME=TOPIC`` pairs stand for; InputError for one that is none."""
-    table = {}
-    for pair in pairs:
-        name, equals, topic = pair.partition("=")
-        if not equals or not topic or name not in TOPICS:
-            raise InputError(
-                f"--topic {pair!r:.80}: expected NAME=TOPIC with NAME one of {', '.join(TOPICS)}"
-            )
-        table[name] = topic
-    return table
 
 
 def _search(arguments: argparse.Namespace) -> int:
@@ -127,7 +115,7 @@ def _search(arguments: argparse.Namespace) -> int:
     task = Task(names, arguments.worlds, robot, config, arguments.data, arguments.seed)
     folder = make_folder("--out", arguments.out or Path("out/tune"))
     processes = arguments.workers or os.cpu_count() or 1
-    at_once = max(8, 2 * processes)
+    at_once = max(4, 2 * processes)
     plan = Plan(3600.0 * arguments.hours, arguments.settings, at_once, arguments.seed)
     prepare()
     workers: Any = nullcontext(arguments.dask or processes)

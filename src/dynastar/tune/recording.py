@@ -22,6 +22,7 @@ Floats = npt.NDArray[np.float64]
 
 NOT_NEEDED = {"map", "keepout_filter_mask", "speed_filter_mask", "goal_pose", "amcl_pose"}
 NOT_NEEDED |= {"/tf", "/tf_static"}
+BURST = 1e-3  # s, at most, between messages that came late together
 AT_ORIGIN = Mount(Pose2D(0.0, 0.0, 0.0), False)
 
 
@@ -78,11 +79,13 @@ def _read(bag: BagReader, shorts: Mapping[str, str]) -> Drive:
     for short in ("scan", "odom", COMMANDS):
         if len(found[short]) < 2:
             raise DataError(f"{bag.path}: fewer than two messages of '{short}'")
-    states = np.array([values for _, values in found["odom"]])
+    times, states = (np.array(part) for part in zip(*found["odom"], strict=True))
+    apart = np.concatenate([[True], np.diff(times) > BURST])
+    times, states = times[apart], states[apart]
     return Drive(
         np.array([time for time, _ in found[COMMANDS]]),
         np.array([twist for _, twist in found[COMMANDS]]),
-        np.array([time for time, _ in found["odom"]]),
+        times,
         states[:, 3:],
         states[:, :3],
         np.array([time for time, _ in found["scan"]]),

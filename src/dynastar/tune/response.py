@@ -243,6 +243,7 @@ def odometry_gain(axis: Axis, travelled: Floats) -> Estimate:
     marks = np.searchsorted(axis.times, np.arange(axis.times[0], axis.times[-1], SETTLED))
     told, true = np.diff(integral[marks]), np.diff(travelled[marks])
     fast = np.abs(told) > 0.2 * np.abs(told).max() if len(told) else np.empty(0, np.bool_)
+    fast &= np.abs(true) > SAME
     if fast.sum() < FEWEST or np.abs(told).max() < axis.motion:
         return untold(name, "", "the robot hardly moved", int(fast.sum()))
     ratios = told[fast] / true[fast]

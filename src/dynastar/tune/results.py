@@ -4,7 +4,7 @@ import html
 import io as text_io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from dynastar.io.files import written_aside
 from dynastar.robot import Robot
@@ -13,6 +13,9 @@ from dynastar.tune.space import Parameter, limited, settings_table
 from dynastar.tune.state import State, Trial
 from dynastar.tune.toml import toml_text
 from dynastar.tune.verdict import Verdict
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 TUNED, REPORT = "tuned.toml", "report.html"
 STYLE = """
@@ -56,7 +59,7 @@ def report_html(state: State, space: Sequence[Parameter], found: Verdict) -> str
             "<p>Importance by PED-ANOVA: how well each setting alone tells the best tenth from the "
             f"others, as a fraction, over {len(state.finished)} settings. With fewer than about 50 it "
             "is rough.</p>",
-            _picture(weights, state, space),
+            _as_svg(draw_importances(weights, state, space)),
         ]
     else:
         parts.append("<p>Too few settings were tried to say.</p>")
@@ -89,13 +92,15 @@ def _counts(state: State) -> str:
     )
 
 
-def _picture(weights: Mapping[str, float], state: State, space: Sequence[Parameter]) -> str:
-    """Importance of each setting, and losses over the three that mattered most, as SVG."""
+def draw_importances(
+    weights: Mapping[str, float], state: State, space: Sequence[Parameter]
+) -> "Figure":
+    """Draws the importance of each setting, and the losses over the three that mattered most."""
     from dynastar.viewer import palette
     from dynastar.viewer.sheet import PAGE, plain, room, sheet
 
     figure = sheet(PAGE, 2.6)
-    bars = room(figure, 1.5, 0.45, 1.6, 2.0)
+    bars = room(figure, 1.5, 0.45, 1.5, 2.0)
     names = list(weights)[::-1]
     bars.barh(range(len(names)), [weights[name] for name in names], color=palette.INK)
     bars.set_yticks(range(len(names)), names)
@@ -103,7 +108,7 @@ def _picture(weights: Mapping[str, float], state: State, space: Sequence[Paramet
     plain(bars)
     logs = {parameter.name: parameter.log for parameter in space}
     for place, name in enumerate(list(weights)[:3]):
-        axes = room(figure, 3.45 + 1.15 * place, 0.45, 0.95, 2.0)
+        axes = room(figure, 3.7 + 1.07 * place, 0.45, 0.95, 2.0)
         finished = state.finished
         axes.scatter(
             [trial.values[name] for trial in finished],
@@ -114,11 +119,18 @@ def _picture(weights: Mapping[str, float], state: State, space: Sequence[Paramet
         if logs[name]:
             axes.set_xscale("log")
         axes.set_xlabel(name)
-        axes.set_title("loss, at most 1.5" if place == 0 else "", fontsize=6)
+        if place == 0:
+            axes.set_ylabel("loss, at most 1.5")
         plain(axes)
+        axes.tick_params(labelleft=place == 0)
+    return figure
+
+
+def _as_svg(figure: "Figure") -> str:
     buffer = text_io.StringIO()
     figure.savefig(buffer, format="svg", metadata={"Date": None})
-    return buffer.getvalue().partition("<svg")[1] + buffer.getvalue().partition("<svg")[2]
+    _, tag, rest = buffer.getvalue().partition("<svg")
+    return f"{tag}{rest}"
 
 
 def _table(state: State, space: Sequence[Parameter]) -> str:

@@ -1,6 +1,7 @@
 """``tune``: a search from its options to its results."""
 
 import hashlib
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -15,6 +16,7 @@ from dynastar.config import shown
 from dynastar.errors import InputError
 from dynastar.navigator import NavigatorConfig
 from dynastar.robot import Robot
+from dynastar.ros.settings import flat
 from dynastar.tune.objective import MOST_WORLDS
 from dynastar.tune.results import write_results
 from dynastar.tune.search import Plan, Say, Search
@@ -84,10 +86,11 @@ def driven(
 def _asked(task: Task, suites: dict[str, "str | RobotWorlds"]) -> dict[str, object]:
     """What a search depends on, by the names of the options."""
     robots = "".join(one.declared for one in suites.values() if isinstance(one, RobotWorlds))
+    declared = json.dumps(flat(task.config))
     return {
         "suite": list(task.suites),
         "worlds": task.worlds,
-        "robot": hashlib.sha256(f"{robots}{task.config}".encode()).hexdigest()[:16],
+        "robot": hashlib.sha256(f"{robots}{declared}".encode()).hexdigest()[:16],
         "seed": task.seed,
         "data": shown(str(task.data)),
         "version of dynastar": code_version(),

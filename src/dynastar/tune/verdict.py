@@ -63,5 +63,6 @@ def compared(default: Sequence[Row], tuned: Sequence[Row]) -> Verdict:
             f"; time {100.0 * (ratio - 1.0):+.1f} %, 95 % interval {low:+.1f} to {high:+.1f} %, "
             f"in the {len(both)} worlds in which both arrived"
         )
-    text = f"{heading}, in {len(pairs)} worlds of report seeds: {words}{shown}"
+    why = words.removeprefix("better: ")
+    text = f"{heading}, in {len(pairs)} worlds of report seeds: {why}{shown}"
     return Verdict(better, text, len(pairs), lost, gained, ratio, interval)
