@@ -126,12 +126,15 @@ def test_the_file_is_a_robot_with_the_safe_ends(drives, tmp_path):
     file.write_text(text)
     robot, config = io.load_robot(file)
     assert robot.footprint.circumscribed == 0.25
+    assert (robot.limits.v_max, robot.limits.v_min, robot.lidar.range_max) == (0.6, -0.6, 6.0)
     assert robot.limits.v_brake <= LIMITS.v_brake
     assert robot.limits.v_least >= scenario.drive.deadband_v
     assert scenario.latency <= config.latency <= scenario.latency + 0.06
     assert scenario.noise.range_bound <= config.range_error
     assert config.drive_error >= 0.06
     assert "# gain_v: 0.93" in text
+    for name, estimate in found.estimates.items():
+        assert f"# {name}: {estimate.words().partition(': ')[2]}" in text
     assert len(tomllib.loads(text)["lidar"]["posts"]) == 2
     assert "No recording tells: footprint" in text
 

@@ -1,6 +1,6 @@
 """An estimate with its evidence."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -23,6 +23,11 @@ class Estimate:
     def told(self) -> bool:
         """Whether the recording tells."""
         return self.value is not None
+
+    def widened(self, share: float) -> "Estimate":
+        """The same with a range that is wider by a share of the value, at either end."""
+        more = share * abs(self.value or 0.0)
+        return replace(self, low=self.low - more, high=self.high + more)
 
     def words(self) -> str:
         """The estimate as a line of text."""

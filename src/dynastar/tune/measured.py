@@ -21,10 +21,12 @@ from dynastar.tune.response import (
     onsets_of,
 )
 from dynastar.tune.senses import OwnPart, own_parts, range_error, readings
-from dynastar.tune.toml import toml_text
+from dynastar.tune.toml import rounded, toml_text
 
 Floats = npt.NDArray[np.float64]
 
+AXES = "v", "omega"
+UNKNOWN = "pioneer3dx"  # base of the file where the robot is not known
 BODY = 0.1  # m beyond the footprint that a part of the robot may reach
 NEVER_TOLD = (
     "footprint, v_max and omega_max, constant errors of the ranges, pose_error and heading_error, where "
@@ -69,8 +71,8 @@ def measured(drive: Drive, robot: Robot | None = None) -> Measured:
             axis.name, axis.unit, axis.command_times, axis.commands, axis.times, axis.speeds / scale
         )
         response = gain(true)
-        found += [reported, response]
-        found += accelerations(true, response, delays)
+        derived = [response, *accelerations(true, response, delays)]
+        found += [reported, *(one.widened(_relative_error(reported)) for one in derived)]
         found.append(dead_band(true, delay))
     found += [_period(drive), range_error(drive.scans, _resting(drive, v, omega))]
     found.append(readings(drive.scans))
@@ -88,48 +90,65 @@ def measured(drive: Drive, robot: Robot | None = None) -> Measured:
 def robot_toml(found: Measured, source: str) -> str:
     """The robot as a file for ``--robot``, each value with its evidence as a comment.
 
-    Of a range the end that is safe is written: the longest latency, the weakest braking.
+    Of a range the end that is safe is written: the longest latency, the weakest braking. What the
+    recording does not tell is that of the robot it was given.
     """
-    estimates, robot = found.estimates, found.robot
-    names = {estimate.name: estimate for estimate in estimates.values()}
-    base = robot.name if robot is not None and robot.name in ROBOTS else "pioneer3dx"
-    table: dict[str, Any] = {
-        "latency": _end(names["latency"], "high"),
-        "robot": {
-            "base": base,
-            **_footprint(robot),
-            "limits": {
-                "v_accel": names["v_accel"].value,
-                "omega_accel": names["omega_accel"].value,
-                "v_brake": _end(names["v_brake"], "low"),
-                "omega_brake": _end(names["omega_brake"], "low"),
-                "v_least": _end(names["deadband_v"], "high"),
-                "omega_least": _end(names["deadband_omega"], "high"),
-            },
-        },
-        "sensor": {"beams": _whole(names["beams"].value)},
-        "drive": {name: names[name].value for name in ("gain_v", "gain_omega")},
-        "lidar": {"posts": [vars(part) for part in found.own] or None},
-        "navigator": {
-            "period": names["period"].value,
-            "range_error": _end(names["range_error"], "high"),
-            "drive_error": _drive_error(names["gain_v"], names["gain_omega"]),
-        },
-    }
-    comments = {_place(name): estimate.words() for name, estimate in names.items()}
+    comments = {_place(name): one.words() for name, one in found.estimates.items()}
     comments["navigator.drive_error"] = "how much faster than told the drive is, from the gains"
     comments["lidar.posts"] = found.own_words
-    untold_lines = [one.words() for one in names.values() if not one.told]
     head = [
         f"The robot as {source} shows it, by dynastar tune --bag.",
         "Above each value: the estimate, its range, and what it is from.",
-        "What is not here is taken from the base: check it, and declare what is true.",
+        "What has none is not measured: check it, and declare what is true.",
         f"No recording tells: {NEVER_TOLD}.",
-        *untold_lines,
+        *(one.words() for one in found.estimates.values() if not one.told),
     ]
-    if robot is None:
-        head.append(f"The base {base} is a guess, for the footprint: name your own.")
-    return toml_text(_without_none(table), comments, head)
+    if found.robot is None:
+        head.append(f"The base {UNKNOWN} is a guess, for the footprint: name your own.")
+    return toml_text(_without_none(_tables(found)), comments, head)
+
+
+def _tables(found: Measured) -> dict[str, Any]:
+    """The tables of the file, None for what is not known."""
+    names, robot = found.estimates, found.robot
+    limits = {
+        "v_accel": names["v_accel"].value,
+        "omega_accel": names["omega_accel"].value,
+        "v_brake": _end(names["v_brake"], "low"),
+        "omega_brake": _end(names["omega_brake"], "low"),
+        "v_least": _end(names["deadband_v"], "high"),
+        "omega_least": _end(names["deadband_omega"], "high"),
+    }
+    navigator = {
+        "period": names["period"].value,
+        "range_error": _end(names["range_error"], "high"),
+        "drive_error": _drive_error(names["gain_v"], names["gain_omega"]),
+    }
+    sensor: dict[str, Any] = {"beams": _whole(names["beams"].value)}
+    footprint, base = {}, UNKNOWN
+    if robot is not None:
+        base = robot.name if robot.name in ROBOTS else UNKNOWN
+        footprint, limits = (
+            _footprint(robot),
+            robot.limits._asdict() | rounded(_without_none(limits)),
+        )
+        sensor = robot.lidar._asdict() | sensor
+    return {
+        **rounded({"latency": _end(names["latency"], "high")}),
+        "robot": {"base": base, **footprint, "limits": limits},
+        "sensor": sensor,
+        "drive": rounded({f"gain_{name}": names[f"gain_{name}"].value for name in AXES}),
+        "odometry": rounded(
+            {f"gain_{name}": names[f"odometry_gain_{name}"].value for name in AXES}
+        ),
+        "lidar": {"posts": [rounded(vars(part)) for part in found.own] or None},
+        "navigator": rounded(navigator),
+    }
+
+
+def _relative_error(estimate: Estimate) -> float:
+    """Half of the range over the value; 0 where nothing is told."""
+    return 0.5 * (estimate.high - estimate.low) / estimate.value if estimate.value else 0.0
 
 
 def _axes(drive: Drive) -> tuple[Axis, Axis]:
@@ -138,7 +157,7 @@ def _axes(drive: Drive) -> tuple[Axis, Axis]:
     v, omega = (
         Axis(name, unit, times, told, drive.times, speeds)
         for name, unit, told, speeds in zip(
-            ("v", "omega"), ("m/s", "rad/s"), commands.T, drive.twists.T, strict=True
+            AXES, ("m/s", "rad/s"), commands.T, drive.twists.T, strict=True
         )
     )
     return v, omega
@@ -187,9 +206,7 @@ def _whole(value: float | None) -> int | None:
     return None if value is None else round(value)
 
 
-def _footprint(robot: Robot | None) -> dict[str, Any]:
-    if robot is None:
-        return {}
+def _footprint(robot: Robot) -> dict[str, Any]:
     if robot.footprint.is_disc:
         return {"radius": robot.footprint.circumscribed}
     return {"polygon": robot.footprint.vertices.tolist()}
@@ -207,7 +224,9 @@ def _place(name: str) -> str:
     }
     if name in moved:
         return moved[name]
-    return f"drive.{name}" if name.startswith("gain") else f"robot.limits.{name}"
+    if "gain" in name:
+        return f"drive.{name}" if name.startswith("gain") else name.replace("_", ".", 1)
+    return f"robot.limits.{name}"
 
 
 def _without_none(table: Mapping[str, Any]) -> dict[str, Any]:

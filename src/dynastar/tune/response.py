@@ -82,7 +82,7 @@ def gain(axis: Axis) -> Estimate:
     if len(ratios) < FEWEST:
         return untold(name, "", _lack(len(ratios), "steady speeds of 1 s or more"), len(ratios))
     value = float(np.median(ratios))
-    error = ERRORS * (_deviation(ratios) / len(ratios) ** 0.5 + float(np.median(errors)))
+    error = ERRORS * (_error_of_median(ratios) + float(np.median(errors)))
     error = max(error, ROUNDING * abs(value))
     evidence = "odometry over command in steady stretches"
     return Estimate(name, "", value, value - error, value + error, len(ratios), evidence)
@@ -248,14 +248,13 @@ def odometry_gain(axis: Axis, travelled: Floats) -> Estimate:
         return untold(name, "", "the robot hardly moved", int(fast.sum()))
     ratios = told[fast] / true[fast]
     value, n = float(np.median(ratios)), len(ratios)
-    error = max(ERRORS * _deviation(ratios) / n**0.5, ROUNDING)
+    error = max(ERRORS * _error_of_median(ratios), ROUNDING)
     return Estimate(name, "", value, value - error, value + error, n, "twist over change of pose")
 
 
-def _deviation(values: Sequence[float] | Floats) -> float:
-    """Standard deviation by the median absolute deviation."""
-    array = np.asarray(values)
-    return 1.4826 * float(np.median(np.abs(array - np.median(array))))
+def _error_of_median(values: Sequence[float] | Floats) -> float:
+    """Standard error of the median of values that are normally distributed."""
+    return 1.2533 * float(np.std(values, ddof=1)) / len(values) ** 0.5
 
 
 def _lack(found: int, what: str) -> str:

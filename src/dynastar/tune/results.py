@@ -11,7 +11,7 @@ from dynastar.robot import Robot
 from dynastar.tune.sampler import importances
 from dynastar.tune.space import Parameter, limited, settings_table
 from dynastar.tune.state import State, Trial
-from dynastar.tune.toml import toml_text
+from dynastar.tune.toml import rounded, toml_text
 from dynastar.tune.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -30,10 +30,10 @@ def tuned_toml(state: State, found: Verdict, robot: Robot | None) -> str:
     """The settings to use: the best setting where it is better than the default, else the default."""
     best = state.best if found.better else None
     chosen = best or state.trials[0]
-    table: dict[str, Any] = {"navigator": settings_table(chosen.values)}
+    table: dict[str, Any] = {"navigator": settings_table(rounded(chosen.values))}
     if robot is not None:
         own, used = robot.limits._asdict(), limited(robot, chosen.values).limits._asdict()
-        limits = {name: value for name, value in used.items() if value != own[name]}
+        limits = rounded({name: value for name, value in used.items() if value != own[name]})
         table |= {"robot": {"limits": limits}} if limits else {}
     kind = "tuned" if best is not None else "default"
     head = (

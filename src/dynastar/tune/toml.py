@@ -13,6 +13,14 @@ def toml_text(table: Mapping[str, Any], comments: Mapping[str, str], head: Seque
     return "\n".join(lines) + "\n"
 
 
+def rounded(values: Mapping[str, Any]) -> dict[str, Any]:
+    """The values with their floats rounded to six digits."""
+    return {
+        key: float(f"{value:.6g}") if isinstance(value, float) else value
+        for key, value in values.items()
+    }
+
+
 def _add(
     table: Mapping[str, Any], where: str, comments: Mapping[str, str], lines: list[str]
 ) -> None:
@@ -34,10 +42,10 @@ def _value(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, float):
+        value = float(value)  # numpy's own has another repr
         if not math.isfinite(value):
             return "nan" if math.isnan(value) else ("inf" if value > 0.0 else "-inf")
-        text = f"{value:.6g}"
-        return text if set(text) & set(".e") else f"{text}.0"
+        return repr(value)
     if isinstance(value, list | tuple):
         return f"[{', '.join(map(_value, value))}]"
     if isinstance(value, Mapping):
