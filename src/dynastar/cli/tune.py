@@ -26,10 +26,13 @@ examples:
   dynastar tune --bag drive.mcap --out my_robot.toml
 
 Every setting drives the same worlds; poor ones are stopped early. The best one is compared with the
-default in other worlds, of report seeds. Writes tuned.toml, report.html and state.json into DIR. A search
+default in other worlds, of report seeds. Writes tuned.toml, report.html and state.json into PATH. A search
 that was stopped goes on when the command is given again. The robot's file has the keys of a scenario:
 [robot], [sensor], [navigator]. `random` and `people` are drawn for it, other suites have robots of their
-own. The bounds of the no-contact guarantee are never changed."""
+own. The bounds of the no-contact guarantee are never changed.
+
+--bag reads scans, odometry and commands of a drive, and writes latency, gains, accelerations, dead band,
+range noise and the robot's own parts in view, each with its evidence, into the file PATH."""
 
 FEWEST_HOURS = 0.001
 TOPICS = ("scan", "odom", "cmd_vel")
