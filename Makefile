@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PYTHONS := 3.11 3.12 3.13 3.14
 # Of Python code, in percent at least. Only in .ci/run: tracing makes the tests 40 % slower.
-COVERAGE := $(if $(CI),--cov --cov-report=term --cov-fail-under=75)
+COVERAGE := $(if $(CI),--cov --cov-report=term --cov-fail-under=85)
 STAMP := $(VENV)/.installed
 PEERS := benchmarks/.venv
 ROS := .venvs/ros

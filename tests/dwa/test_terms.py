@@ -14,7 +14,7 @@ from dynastar.dwa.rollout import ROW
 from dynastar.dwa.scene import FOLLOW, Manoeuvre
 from dynastar.guidance.cost_to_go import turn_to_descent, value_at
 from dynastar.perception import MovingObstacle, PredictionConfig
-from dynastar.perception.prediction import predict
+from dynastar.perception.prediction import WEIGHTS, predict
 from dynastar.robot import ROBOTS, Footprint, Limits, Robot, slew
 from scenes import STEP, STEPS, boxed, empty, field_of, rules_for, scene_of, start_of
 
@@ -187,7 +187,7 @@ def test_risk_is_the_worst_discounted_probability_of_each_hypothesis(seed):
     travels = ahead, (1.0 - np.exp(-2.0 * ahead)) / 2.0, -ahead  # continue, stop, turn back
     expected = 0.0
     for x, y, vx, vy, radius in obstacles:
-        for weight, travel in zip((0.7, 0.2, 0.1), travels, strict=True):
+        for weight, travel in zip(WEIGHTS, travels, strict=True):
             mean = np.array([x, y]) + travel[:, None] * np.array([vx, vy])
             gaps = np.hypot(*(mean - places).T) - RULES.risk_radius - radius
             p = np.exp(-after / config.memory) / (1.0 + np.exp(1.702 * gaps / deviation))

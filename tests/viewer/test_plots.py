@@ -10,6 +10,7 @@ from matplotlib import pyplot
 
 from dynastar import GridFrame, LaserScan, OccupancyGrid, Path, Plan, Pose2D
 from dynastar.errors import MissingPackage
+from dynastar.extras import how_to_install
 from episodes import episode
 
 GRID = OccupancyGrid(np.eye(8, dtype=bool), GridFrame(0.5, 1.0, 2.0))
@@ -77,7 +78,7 @@ def test_without_matplotlib_one_error_says_what_to_install():
     )
     last = ran.stderr.splitlines()[-1]
     assert MissingPackage.__name__ in last
-    assert "dynastar[viewer]" in last
+    assert how_to_install("viewer") in last
 
 
 @pytest.mark.parametrize("thing", THINGS, ids=lambda thing: type(thing).__name__)
