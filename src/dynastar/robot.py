@@ -132,12 +132,8 @@ class Footprint:
 
     @property
     def half_width(self) -> float:
-        """Half the width (m) of the narrowest way through which the footprint can be moved."""
-        if self.is_disc:
-            return self.circumscribed
-        edges = np.roll(self.vertices, -1, axis=0) - self.vertices
-        normals = edges[:, ::-1] * (-1.0, 1.0) / np.hypot(*edges.T)[:, None]
-        return 0.5 * float(np.ptp(self.vertices @ normals.T, axis=0).min())
+        """Largest distance (m) of the footprint from the line that it drives along."""
+        return self.circumscribed if self.is_disc else float(np.abs(self.vertices[:, 1]).max())
 
     @property
     def discs(self) -> npt.NDArray[np.float64]:

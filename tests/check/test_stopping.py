@@ -11,13 +11,12 @@ from hypothesis import strategies as st
 from dynastar.check.stopping import (
     blind_beyond,
     fastest_within,
-    half_width,
     looks_towards,
     sight_of,
     stop_from,
 )
 from dynastar.navigator import NavigatorConfig
-from dynastar.robot import ROBOTS, Footprint, Lidar, slew
+from dynastar.robot import ROBOTS, Lidar, slew
 
 PIONEER = ROBOTS["pioneer3dx"]
 CONFIG = NavigatorConfig(latency=0.1)
@@ -95,9 +94,3 @@ def _covers(footprint, points, margin):
 def test_a_short_blind_range_stays_in_the_footprint():
     assert blind_beyond(replace(PIONEER, lidar=Lidar(range_min=0.25))) == pytest.approx(0.0)
     assert blind_beyond(replace(PIONEER, lidar=Lidar(range_min=0.35))) == pytest.approx(0.1)
-
-
-def test_the_width_of_a_polygon_is_counted_from_the_line_that_its_centre_drives():
-    shape = Footprint.polygon([(0.3, -0.1), (0.3, 0.4), (-0.3, 0.4), (-0.3, -0.1)])
-    assert half_width(shape) == pytest.approx(0.4)
-    assert half_width(Footprint.disc(0.2)) == pytest.approx(0.2)

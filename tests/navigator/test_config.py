@@ -1,6 +1,11 @@
 import pytest
 
 from dynastar.navigator.config import CELLS, NavigatorConfig, fitted
+from dynastar.robot import Robot
+
+
+def a_robot(radius):
+    return Robot.simple(radius, 0.5)
 
 
 @pytest.mark.parametrize(
@@ -8,16 +13,16 @@ from dynastar.navigator.config import CELLS, NavigatorConfig, fitted
 )
 def test_small_robots_get_smaller_cells_and_as_many(half_width, share):
     config = NavigatorConfig()
-    got = fitted(config, half_width)
+    got = fitted(config, a_robot(half_width))
     assert got.resolution == pytest.approx(share * config.resolution)
     assert got.resolution <= max(half_width / CELLS, 0.5 * config.resolution)
     cells = config.local_map.size / config.resolution
     assert got.local_map.size / got.resolution == pytest.approx(cells)
-    assert fitted(got, half_width).resolution <= got.resolution
+    assert fitted(got, a_robot(half_width)).resolution <= got.resolution
 
 
 def test_nothing_but_the_cells_is_changed():
     config = NavigatorConfig(latency=0.1)
     cells = {"local_map": config.local_map, "resolution": config.resolution}
-    got = fitted(config, 0.1)._replace(**cells)
+    got = fitted(config, a_robot(0.1))._replace(**cells)
     assert got == config

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 from dynastar.check.finding import Finding
 from dynastar.check.passages import Passage, passages
-from dynastar.check.stopping import half_width
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator.config import CELLS, NavigatorConfig, fitted, margin_of
 from dynastar.navigator.planners import radii_of
@@ -31,8 +30,8 @@ def ways_of(robot: Robot, config: NavigatorConfig) -> Ways:
     """The widths of ways that a robot needs, its margins included."""
     margin = margin_of(robot, config)
     roomy, tight = radii_of(robot.footprint, margin)
-    drive = 2.0 * max(half_width(robot.footprint) + margin, tight)
-    cell = fitted(config, robot.footprint.inscribed).resolution
+    drive = 2.0 * max(robot.footprint.half_width + margin, tight)
+    cell = fitted(config, robot).resolution
     return Ways(drive, drive + ROUNDED_CELLS * cell, 2.0 * roomy)
 
 
@@ -98,20 +97,20 @@ def _places(found: Sequence[Passage]) -> str:
 
 def cells(robot: Robot, config: NavigatorConfig, grid: OccupancyGrid | None) -> Finding:
     """Whether cells are small enough for the footprint."""
-    inscribed = robot.footprint.inscribed
-    planned = fitted(config, inscribed).resolution
+    half = robot.footprint.half_width
+    planned = fitted(config, robot).resolution
     text = f"Plans are made in cells of {planned:.3g} m at most"
-    values = {"resolution": planned, "inscribed": inscribed}
+    values = {"resolution": planned, "half_width": half}
     if grid is not None:
         text += f", the map has cells of {grid.resolution:.3g} m"
         values["map"] = grid.resolution
-    text += f"; the footprint's inscribed radius is {inscribed:.3g} m."
-    if planned > inscribed / CELLS + ROUNDING:
-        advice = f"Declare resolution = {inscribed / CELLS:.3g}, {CELLS} cells to that radius."
+    text += f"; half of the footprint's width is {half:.3g} m."
+    if planned > half / CELLS + ROUNDING:
+        advice = f"Declare resolution = {half / CELLS:.3g}, {CELLS} cells to that."
         return Finding("cells", "warning", text, advice, values)
-    if grid is not None and grid.resolution > 0.5 * inscribed + ROUNDING:
+    if grid is not None and grid.resolution > 0.5 * half + ROUNDING:
         advice = (
-            f"Draw the map in cells of {0.5 * inscribed:.2g} m or less: walls are up to a cell thicker on "
+            f"Draw the map in cells of {0.5 * half:.2g} m or less: walls are up to a cell thicker on "
             "it, and doors narrower."
         )
         return Finding("cells", "warning", text, advice, values)

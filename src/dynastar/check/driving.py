@@ -59,18 +59,18 @@ def _turn_lidar() -> str:
 
 
 def _limit(robot: Robot, config: NavigatorConfig) -> str:
-    """What limits the sight, in words."""
+    """Names what limits how far the lidar shows free space."""
     sight = sight_of(robot, config)
     if sight.ahead == sight.by_beams:
         return f"{robot.lidar.beams} beams, narrowest {config.local_map.narrowest:g} m"
     if sight.ahead == sight.by_map:
-        own = fitted(config, robot.footprint.inscribed)
+        own = fitted(config, robot)
         return f"half of the local map's size, {own.local_map.size:.3g} m"
     return f"range_max {robot.lidar.range_max:g} m"
 
 
 def _see_farther(robot: Robot, config: NavigatorConfig) -> str:
-    """What lets the robot see farther, in words."""
+    """Says which change lets the robot see farther."""
     sight = sight_of(robot, config)
     if sight.ahead == sight.by_beams:
         return (

@@ -14,7 +14,7 @@ from dynastar.check.checking import Check
 from dynastar.check.doors import Ways, ways_of
 from dynastar.check.passages import Passage
 from dynastar.check.recording import Recording
-from dynastar.check.stopping import front_of, half_width, room_ahead, sight_of, stop_from
+from dynastar.check.stopping import front_of, room_ahead, sight_of, stop_from
 from dynastar.navigator import NavigatorConfig
 from dynastar.navigator.config import margin_of
 from dynastar.robot import Robot
@@ -112,7 +112,7 @@ def _draw_from_above(axes: Axes, robot: Robot, config: NavigatorConfig) -> None:
     free = Wedge((lidar.x, lidar.y), reach, middle - half, middle + half)
     free.set(facecolor=palette.EXPLORED, edgecolor="none")
     axes.add_patch(free)
-    wide, front = half_width(shape) + margin, front_of(shape) + margin
+    wide, front = shape.half_width + margin, front_of(shape) + margin
     brakes_at = front + stop.reaction
     for begin, length, colour in (
         (front, stop.reaction, palette.SLOW),

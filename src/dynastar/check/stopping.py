@@ -51,13 +51,6 @@ def _fastest(way: float, delay: float, limits: Limits) -> float:
     return min(limits.v_max, speed)
 
 
-def half_width(footprint: Footprint) -> float:
-    """Largest distance (m) of the footprint from the line that it drives along."""
-    if footprint.is_disc:
-        return footprint.circumscribed
-    return float(np.abs(footprint.vertices[:, 1]).max())
-
-
 def front_of(footprint: Footprint) -> float:
     """Metres from the centre of rotation to the front of the footprint."""
     return footprint.circumscribed if footprint.is_disc else float(footprint.vertices[:, 0].max())
@@ -86,7 +79,7 @@ def sight_of(robot: Robot, config: NavigatorConfig) -> Sight:
     lidar = robot.lidar
     if not looks_towards(lidar, 0.0):
         return Sight(0.0, 0.0, 0.0)
-    step, own = lidar.increment, fitted(config, robot.footprint.inscribed)
+    step, own = lidar.increment, fitted(config, robot)
     by_range = lidar.x + lidar.range_max * (1.0 - 0.5 * step) - config.range_error
     by_beams = lidar.x + config.local_map.narrowest / step
     by_map = 0.5 * own.local_map.size - 2.0 * own.resolution
@@ -106,7 +99,7 @@ def room_ahead(robot: Robot, config: NavigatorConfig) -> float:
     room = min(radius + lidar.x, sight.by_map) - front_of(shape)
     for x, y in shape.vertices:
         room = min(room, lidar.x + math.sqrt(max(0.0, radius**2 - (y - lidar.y) ** 2)) - x)
-    return float(room) - margin_of(robot, config) - fitted(config, shape.inscribed).resolution
+    return float(room) - margin_of(robot, config) - fitted(config, robot).resolution
 
 
 def fastest_near_people(robot: Robot, config: NavigatorConfig) -> float:

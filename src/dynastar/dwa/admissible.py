@@ -67,7 +67,8 @@ def certified_stop(scene, rules, state, command, hold):
     body, limits, start = rules.body, rules.fast_limits, state.pose
     half, more = 0.5 * rules.period, 1.0 + rules.drive_error
     longer = max(hold - rules.period, 0.0)
-    v, omega = more * command[0], more * command[1]
+    v, omega = command
+    v, omega = more * v, more * omega
     state = State(start, more * state.v, more * state.omega)
     for duration in (half, half, longer):
         after = driven(state, v, omega, limits, duration)

@@ -233,10 +233,10 @@ class DynamicWindow:
         or else turning on the spot. None if only a stop is left. With ``steady`` (s) it speeds up only
         to what could be held for so long. ``stops`` as in ``choose``.
         """
-        found, v, omega, code = nearest_admissible(
+        found, command, code = nearest_admissible(
             surroundings, self.rules, _records(stops), tuple(twist), tuple(asked), steady
         )
-        return (Twist(v, omega) if found else None), REFUSALS.get(code, "")
+        return (Twist(*command) if found else None), REFUSALS.get(code, "")
 
 
 def _records(stops: Stops) -> npt.NDArray[np.void]:

@@ -63,9 +63,10 @@ def driveable(command, wanted, least):
 @inner
 def command_towards(rules, twist, wanted):
     """The command (v, omega) of one period on the way from a ``twist`` to the ``wanted`` speeds."""
-    (v, omega), limits, period = wanted, rules.limits, rules.period
-    next_v = slew(twist[0], v, limits.v_accel, limits.v_brake, period)
-    next_omega = slew(twist[1], omega, limits.omega_accel, limits.omega_brake, period)
+    (v, omega), (now_v, now_omega) = wanted, twist
+    limits, period = rules.limits, rules.period
+    next_v = slew(now_v, v, limits.v_accel, limits.v_brake, period)
+    next_omega = slew(now_omega, omega, limits.omega_accel, limits.omega_brake, period)
     return driveable(next_v, v, limits.v_least), driveable(next_omega, omega, limits.omega_least)
 
 

@@ -14,14 +14,15 @@ def nearest_admissible(surroundings, rules, stops_from, twist, asked, steady):
 
     First along the arc asked for, as fast as admissible, then turning on the spot. Every command is
     one period's way from ``twist`` (v, omega). With ``steady`` (s), the robot speeds up only to what it
-    could hold for so long. Returns whether there is a command, its v and omega, and why the speeds
-    asked for are refused, or ADMISSIBLE.
+    could hold for so long. Returns whether there is a command, the command, and why the speeds asked
+    for are refused, or ADMISSIBLE.
     """
-    found, v, omega, why = fastest(surroundings, rules, stops_from, twist, asked, steady)
-    if not found and asked[0] != 0.0 and asked[1] != 0.0:
-        turn = 0.0, asked[1]
-        found, v, omega, _ = fastest(surroundings, rules, stops_from, twist, turn, steady)
-    return found, v, omega, why
+    v, omega = asked
+    found, command, why = fastest(surroundings, rules, stops_from, twist, asked, steady)
+    if not found and v != 0.0 and omega != 0.0:
+        turn = 0.0, omega
+        found, command, _ = fastest(surroundings, rules, stops_from, twist, turn, steady)
+    return found, command, why
 
 
 @inner
@@ -29,42 +30,40 @@ def fastest(surroundings, rules, stops_from, twist, asked, steady):
     """The command towards the largest admissible share of the speeds ``asked`` for.
 
     A robot that has to be ``steady`` starts with no share below a part, so that the noise of its
-    sensors does not start and stop it. Returns whether there is such a command, its v and omega, and
-    why the speeds asked for are refused, or ADMISSIBLE.
+    sensors does not start and stop it. Returns whether there is such a command, the command, and why
+    the speeds asked for are refused, or ADMISSIBLE.
     """
-    why, v, omega = checked(surroundings, rules, stops_from, twist, asked, steady)
+    command, why = checked(surroundings, rules, stops_from, twist, asked, steady)
     if why == ADMISSIBLE:
-        return True, v, omega, why
+        return True, command, why
+    (v, omega), (now_v, now_omega) = asked, twist
     best, step = 0.0, 1.0 / PARTS
     for part in range(PARTS - 1, 0, -1):
         share = part * step
-        wanted = share * asked[0], share * asked[1]
-        code, v, omega = checked(surroundings, rules, stops_from, twist, wanted, steady)
+        wanted = share * v, share * omega
+        command, code = checked(surroundings, rules, stops_from, twist, wanted, steady)
         if code == ADMISSIBLE:
             best = share
             break
-    starts = steady > 0.0 and (twist[0] if asked[0] != 0.0 else twist[1]) == 0.0
+    starts = steady > 0.0 and (now_v if v != 0.0 else now_omega) == 0.0
     if best > 0.0 or not starts:
         for _ in range(HALVINGS):
             step *= 0.5
-            wanted = (best + step) * asked[0], (best + step) * asked[1]
-            code, _, _ = checked(surroundings, rules, stops_from, twist, wanted, steady)
+            wanted = (best + step) * v, (best + step) * omega
+            command, code = checked(surroundings, rules, stops_from, twist, wanted, steady)
             if code == ADMISSIBLE:
                 best += step
-    v, omega = command_towards(rules, twist, (best * asked[0], best * asked[1]))
-    return best > 0.0 and (v != 0.0 or omega != 0.0), v, omega, why
+    command = command_towards(rules, twist, (best * v, best * omega))
+    return best > 0.0 and command != (0.0, 0.0), command, why
 
 
 @inner
 def checked(surroundings, rules, stops_from, twist, wanted, steady):
-    """Why ``wanted`` speeds are refused, or ADMISSIBLE, and the command (v, omega) towards them."""
-    v, omega = command_towards(rules, twist, wanted)
+    """The command (v, omega) towards ``wanted`` speeds, and why it is refused, or ADMISSIBLE."""
+    (v, omega), (now_v, now_omega) = command_towards(rules, twist, wanted), twist
     code = refusal(surroundings, rules, stops_from, (v, omega))
-    if (
-        code == ADMISSIBLE
-        and steady > 0.0
-        and (abs(v) > abs(twist[0]) or abs(omega) > abs(twist[1]))
-    ):
+    speeds_up = abs(v) > abs(now_v) or abs(omega) > abs(now_omega)
+    if code == ADMISSIBLE and steady > 0.0 and speeds_up:
         begin = stops_from[-1]
         code = certified_stop(surroundings, rules, state_of(begin), wanted, begin.hold + steady)
-    return code, v, omega
+    return (v, omega), code

@@ -76,13 +76,13 @@ PRESETS: dict[str, NavigatorConfig] = {
 }
 
 
-def fitted(config: NavigatorConfig, half_width: float) -> NavigatorConfig:
+def fitted(config: NavigatorConfig, robot: Robot) -> NavigatorConfig:
     """Shrink map cells, at most by half, until half the robot's width (m) spans 4 of them.
 
     The local map keeps its number of cells. Range noise and rounding close gaps by a cell or two,
     which a small robot needs.
     """
-    share = min(1.0, max(half_width / CELLS / config.resolution, 0.5))
+    share = min(1.0, max(robot.footprint.half_width / CELLS / config.resolution, 0.5))
     local = config.local_map
     return config._replace(
         resolution=share * config.resolution, local_map=local._replace(size=share * local.size)

@@ -67,7 +67,7 @@ class Guard:
     ) -> None:
         config = NavigatorConfig() if config is None else config
         robot = as_robot(NoMap().grid if grid is None else grid, robot, config)
-        config = fitted(config, robot.footprint.half_width)
+        config = fitted(config, robot)
         self.robot, self.config = robot, config
         self.sensing = Sensing(robot, config, self._planning_map(grid))
         self._check = Admissibility(robot, config)

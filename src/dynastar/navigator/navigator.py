@@ -49,7 +49,7 @@ class Navigator:
         planner: Planner | None = None,
     ) -> None:
         robot = as_robot(grid, robot, config)
-        config = fitted(config, robot.footprint.half_width)
+        config = fitted(config, robot)
         self.robot, self.config, self._grid = robot, config, grid
         planning_map = PlanningMap(grid, config.resolution, config.unknown)
         self.sensing = Sensing(robot, config, planning_map)

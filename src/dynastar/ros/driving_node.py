@@ -2,6 +2,7 @@
 
 import math
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import Any
 
@@ -29,7 +30,7 @@ def quality(topic: str) -> QoSProfile:
     return LATCHED if topic in LATCHES else QUALITY.get(topic, QoSProfile(depth=1))
 
 
-class DrivingNode(Node):  # type: ignore[misc]
+class DrivingNode(Node, ABC):  # type: ignore[misc]
     """A node with ``parameters`` that feeds a ``bridge`` and publishes cmd_vel, zero at its end."""
 
     bridge: Intake
@@ -63,13 +64,13 @@ class DrivingNode(Node):  # type: ignore[misc]
             elif self.parameters.settings.pose_source == "tf":
                 raise InputError("'pose_source' is tf, which needs the package tf2_msgs")
 
+    @abstractmethod
     def _take(self, topic: str, message: Any) -> None:
-        """Takes in a message of a topic; overridden."""
-        raise NotImplementedError
+        """Takes in a message of a topic."""
 
+    @abstractmethod
     def _request(self, **wanted: Any) -> None:
-        """Carries out a request by name, as the bridge's ``request``; overridden."""
-        raise NotImplementedError
+        """Carries out a request by name, as the bridge's ``request``."""
 
     def _check_clock(self, now: float) -> None:
         """Notes whether the clock goes on, by the steady clock."""
@@ -94,9 +95,9 @@ class DrivingNode(Node):  # type: ignore[misc]
             self._restart()
         return now
 
+    @abstractmethod
     def _restart(self) -> None:
-        """Starts anew, as time has jumped; overridden."""
-        raise NotImplementedError
+        """Starts anew, as time has jumped."""
 
     def _send(self, command: Twist, now: float) -> None:
         if self.parameters.settings.enable_stamped_cmd_vel:
