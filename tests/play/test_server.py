@@ -1,5 +1,6 @@
 """The server as a process: what it answers, whom it lets in, and that nobody can slow the robot."""
 
+import asyncio
 import contextlib
 import io as streams
 import json
@@ -21,7 +22,10 @@ websockets = pytest.importorskip("websockets.sync.client")
 pytest.importorskip("starlette")
 pytest.importorskip("uvicorn")
 
+from starlette.websockets import WebSocketDisconnect  # noqa: E402
 from websockets.exceptions import ConnectionClosed, InvalidStatus  # noqa: E402
+
+from dynastar.play.server import Playground  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -231,6 +235,23 @@ def test_half_sent_requests_keep_nobody_out_and_are_closed(address):
     finally:
         for one in opened:
             one.close()
+
+
+@pytest.mark.parametrize("gone", [WebSocketDisconnect(1006), RuntimeError("closed"), OSError()])
+def test_a_page_that_leaves_while_it_is_told_to_go_is_no_error(gone):
+    class Left:
+        async def accept(self):
+            raise gone
+
+        async def close(self, code, reason):
+            raise gone
+
+    page = Playground.__new__(Playground)
+    page._pages = set()
+    for refused in ("", "of another origin"):
+        page._refusal = lambda _, refused=refused: refused
+        asyncio.run(page._socket(Left()))
+    assert not page._pages
 
 
 def test_a_port_that_is_taken_and_a_scene_that_is_none_are_one_line(address):

@@ -43,6 +43,7 @@ MOST_PAGES = 16  # connected at once
 MOST_ANSWERS = 64  # given at once
 PATIENCE = 20.0  # s for a page to take what it is sent
 POLICY, BUSY = 1008, 1013  # codes of a WebSocket's close
+GONE = (WebSocketDisconnect, RuntimeError, OSError)  # what sending to a page that left raises
 EVERYWHERE = ("0.0.0.0", "::")  # hosts that stand for all addresses of this machine
 
 
@@ -135,11 +136,14 @@ class Playground:
     async def _socket(self, socket: WebSocket) -> None:
         refusal = self._refusal(socket)
         if refusal:
-            await socket.close(POLICY, refusal)
+            await _close(socket, POLICY, refusal)
             return
-        await socket.accept()
+        try:
+            await socket.accept()
+        except GONE:
+            return
         if len(self._pages) >= MOST_PAGES:
-            await socket.close(BUSY, f"{MOST_PAGES} pages are open, which are enough")
+            await _close(socket, BUSY, f"{MOST_PAGES} pages are open, which are enough")
             return
         woken, told = asyncio.Event(), asyncio.Queue[str](MOST_PAGES)
         self._pages.add(woken)
@@ -150,7 +154,7 @@ class Playground:
         try:
             done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
             code, reason = next(iter(done)).result()
-        except (WebSocketDisconnect, RuntimeError, OSError):  # the page is gone
+        except GONE:
             code, reason = 0, ""
         except asyncio.CancelledError:  # the server ends, and this page has not closed in time
             code, reason = 0, ""
@@ -161,8 +165,7 @@ class Playground:
             with contextlib.suppress(asyncio.CancelledError):
                 await asyncio.gather(*tasks, return_exceptions=True)
         if code:
-            with contextlib.suppress(RuntimeError, OSError):
-                await socket.close(code, reason)
+            await _close(socket, code, reason)
 
     async def _send(
         self, socket: WebSocket, woken: asyncio.Event, told: "asyncio.Queue[str]"
@@ -201,6 +204,11 @@ class Playground:
                 refused = json.dumps({"type": "refused", "reason": str(error)})
                 with contextlib.suppress(asyncio.QueueFull):
                     told.put_nowait(refused)
+
+
+async def _close(socket: WebSocket, code: int, reason: str) -> None:
+    with contextlib.suppress(*GONE):
+        await socket.close(code, reason)
 
 
 def _clock(news: News) -> str:
