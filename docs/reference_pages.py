@@ -3,6 +3,7 @@
 import argparse
 import inspect
 import math
+import re
 import types
 from collections.abc import Iterator
 from pathlib import Path
@@ -205,7 +206,7 @@ def _tables(name: str, schema: dict[str, Any]) -> Iterator[str]:
             shown = "required"
         unit = of.get("unit", "")
         words = of.get("description", "").removesuffix(f" ({unit})").replace("``", "`")
-        words = words.partition(". ")[0] if inner else words
+        words = re.split(r"(?<!Eq)\. ", words)[0] if inner else words
         yield f"| `{key}` | {_kind(of)} | {unit} | {_range(of)} | {shown} | {words} |"
     yield ""
     for path, inner in nested:

@@ -98,7 +98,7 @@ def h(config, n, goal):
 def p_over_q(config, occupied, n, start, goal):
     """P / Q in its three readings, at most 1."""
     if config.q == "ratio":
-        a = config.around
+        a = 1  # cell
         around = occupied[max(n[0] - a, 0) : n[0] + a + 1, max(n[1] - a, 0) : n[1] + a + 1]
         return min(around.sum() / max(occupied.sum(), 1), 1.0)
     r0, r1 = sorted((n[0], goal[0]))

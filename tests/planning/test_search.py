@@ -20,7 +20,7 @@ CONFIGS = [
     HeuristicConfig(k=20.0),
     HeuristicConfig(beta="interior"),
     HeuristicConfig(q="line"),
-    HeuristicConfig(q="ratio", around=3),
+    HeuristicConfig(q="ratio"),
     HeuristicConfig(weight=1.5),
 ]
 

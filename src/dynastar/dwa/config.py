@@ -25,7 +25,6 @@ class DwaConfig(NamedTuple):
         float, Field("shortest time for which a sample is held", "s", 0.1, 10.0)
     ] = 0.5
     horizon: Annotated[float, Field("how far ahead manoeuvres are scored", "s", 0.2, 30.0)] = 4.0
-    step: Annotated[float, Field("time between the points of a roll-out", "s", 0.01, 1.0)] = 0.1
     reach: Annotated[
         float,
         Field("time within which a sampled velocity is reached; 0: one period", "s", 0.0, 5.0),

@@ -39,6 +39,7 @@ REFUSALS = {
     admissible.HIDDEN: "unseen space",
 }
 PROBES_APART = 0.3  # m between the points that stand for a polygon's outline, at most
+STEP = 0.1  # s between the points of a roll-out, at most
 LONG_HOLD = 1.5  # s that a sample is held for at the longest
 FULL_SPEED = 0.95  # of a speed limit, from which on the robot drives at it
 
@@ -89,7 +90,7 @@ def body_of(robot: Robot) -> Body:
 
 def rules_of(robot: Robot, config: DwaConfig, period: float, drive_error: float = 0.0) -> Rules:
     """What the kernels need to know of a robot, its settings and the time between commands (s)."""
-    step = min(config.step, config.arc_time / 4)
+    step = min(STEP, config.arc_time / 4)
     held = max(4, round(config.arc_time / step))
     far = config.horizon + 0.5 * robot.limits.v_max / robot.limits.v_brake
     steps = LOOKS * max(2, round(far / step / LOOKS))

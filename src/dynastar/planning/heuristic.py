@@ -8,6 +8,8 @@ from dynastar.config import Field, self_checking
 from dynastar.planning.heap_kernel import Terms
 from dynastar.planning.labels import STRAIGHT
 
+AROUND = 1  # cells of the map, the half width of what is "around n" where Q is a ratio
+
 
 @self_checking
 class HeuristicConfig(NamedTuple):
@@ -25,10 +27,9 @@ class HeuristicConfig(NamedTuple):
         Literal["rectangle", "line", "ratio"],
         Field(
             "Q: cells of the rectangle start - goal, or of a line between them; "
-            "or P / Q as the obstacles around n over all obstacles"
+            "or P / Q as the obstacles in the 3 x 3 cells around n over all obstacles"
         ),
     ] = "rectangle"
-    around: Annotated[int, Field("with q = ratio, how far 'around n' goes", "cells", 1, 10000)] = 1
     parent: Annotated[bool, Field("add the parent's estimate h(p)")] = True
     k: Annotated[float, Field("weight of cos(beta), 0 for none", "cells", 0.0, 1e6)] = 1.0
     beta: Annotated[
@@ -67,7 +68,7 @@ def kernel_terms(
         adaptive=config.exponential or config.parent or config.k > 0.0,
         exponential=config.exponential,
         q=float(q[config.q]),
-        around=cell * int(config.around) + cell // 2 if config.q == "ratio" else 0,
+        around=cell * AROUND + cell // 2 if config.q == "ratio" else 0,
         parent=config.parent,
         # The angle at n is pi less the angle of progress, so its cosine has the other sign.
         k=math.copysign(config.k * cell * STRAIGHT, 1.0 if config.beta == "progress" else -1.0),
