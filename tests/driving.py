@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 
+from dynastar.footprint import Footprint
 from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.navigator import Navigator, NavigatorConfig, RobotState
-from dynastar.robot import Footprint, Lidar, Limits, Robot, arc, slew
+from dynastar.robot import Lidar, Limits, Robot, arc, slew
 from dynastar.scan import LaserScan
 from dynastar.simulation.lidar import LidarSimulator
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from dynastar.robot import Footprint
+from dynastar.footprint import Footprint
 
 
 @pytest.mark.parametrize(

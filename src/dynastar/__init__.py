@@ -55,6 +55,7 @@ if TYPE_CHECKING:  # what _WHERE has, for type checkers
     from dynastar.errors import DynastarWarning as DynastarWarning
     from dynastar.errors import InputError as InputError
     from dynastar.errors import PlanningError as PlanningError
+    from dynastar.footprint import Footprint as Footprint
     from dynastar.geometry import Goal as Goal
     from dynastar.geometry import Pose2D as Pose2D
     from dynastar.geometry import Twist as Twist
@@ -81,7 +82,6 @@ if TYPE_CHECKING:  # what _WHERE has, for type checkers
     from dynastar.planning import PlannerConfig as PlannerConfig
     from dynastar.planning import plan as plan
     from dynastar.robot import ROBOTS as ROBOTS
-    from dynastar.robot import Footprint as Footprint
     from dynastar.robot import Lidar as Lidar
     from dynastar.robot import Limits as Limits
     from dynastar.robot import Robot as Robot

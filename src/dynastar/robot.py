@@ -1,17 +1,15 @@
 """The robot: what it may do, what room it takes, and how it moves (section IV.A, Eq. 4, Fig. 4)."""
 
 import math
-import warnings
-from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Annotated, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from dynastar.config import Field, nearest, self_checking, summary
-from dynastar.errors import ConfigError, DynastarWarning, UnknownRobot
+from dynastar.errors import UnknownRobot
+from dynastar.footprint import Footprint, box
 from dynastar.geometry import Pose2D, Twist, wrap_angle
 
 
@@ -70,118 +68,6 @@ class Lidar(NamedTuple):
         return Pose2D(self.x, self.y, self.theta)
 
 
-LARGE = 5.0  # m, the radius above which a footprint is perhaps not in metres
-PIECES = 4  # that a polygon is cut into for its covering discs
-
-
-@dataclass(frozen=True)
-class Footprint:
-    """The room the robot takes, round its centre of rotation: a disc, or a convex polygon.
-
-    ``vertices`` is (0, 2) for a disc and (n, 2), counter-clockwise, metres, for a polygon. Warns
-    (DynastarWarning) of a footprint that reaches more than 5 m from its centre.
-    """
-
-    vertices: npt.NDArray[np.float64]
-    circumscribed: float
-    inscribed: float
-
-    def __post_init__(self) -> None:
-        if self.circumscribed > LARGE:
-            words = f"a footprint reaches {self.circumscribed:g} m from its centre: lengths are in metres"
-            warnings.warn(words, DynastarWarning, stacklevel=4)
-
-    def __repr__(self) -> str:
-        return f"<Footprint: {self.words()}>"
-
-    def words(self) -> str:
-        """Its shape and size in words."""
-        if self.is_disc:
-            return f"disc of radius {self.circumscribed:g} m"
-        length, width = np.ptp(self.vertices, axis=0)
-        corners = len(self.vertices)
-        return f"polygon of {corners} corners, {length:.3g} m long, {width:.3g} m wide"
-
-    @staticmethod
-    def disc(radius: float) -> "Footprint":
-        """A disc of ``radius`` metres."""
-        if not (math.isfinite(radius) and radius >= 0.0):
-            raise ConfigError(f"a footprint's radius is {radius}: expected 0 m or more")
-        return Footprint(_readonly(np.empty((0, 2))), float(radius), float(radius))
-
-    @staticmethod
-    def polygon(vertices: Sequence[Sequence[float]]) -> "Footprint":
-        """A convex polygon (n >= 3 vertices, metres) that contains the centre of rotation."""
-        points = np.array(vertices, dtype=np.float64)
-        if points.ndim != 2 or points.shape[0] < 3 or points.shape[1] != 2:
-            raise ConfigError(f"a footprint polygon has shape {points.shape}: expected (n >= 3, 2)")
-        if not np.isfinite(points).all():
-            raise ConfigError("a footprint polygon has a vertex that is not finite")
-        edges = np.roll(points, -1, axis=0) - points
-        turns = _cross(edges, np.roll(edges, -1, axis=0))
-        if (turns < 0).all():
-            points = points[::-1].copy()
-            edges = np.roll(points, -1, axis=0) - points
-        elif not (turns > 0).all():
-            raise ConfigError("a footprint polygon is not convex: give its corners in order")
-        inside = _cross(edges, -points) / np.hypot(edges[:, 0], edges[:, 1])
-        if inside.min() < 0:
-            raise ConfigError("a footprint polygon does not contain the centre of rotation (0, 0)")
-        circumscribed = float(np.hypot(points[:, 0], points[:, 1]).max())
-        return Footprint(_readonly(points), circumscribed, float(inside.min()))
-
-    @property
-    def half_width(self) -> float:
-        """Largest distance (m) of the footprint from the line that it drives along."""
-        return self.circumscribed if self.is_disc else float(np.abs(self.vertices[:, 1]).max())
-
-    @property
-    def discs(self) -> npt.NDArray[np.float64]:
-        """Discs (k, 3) of centre x, y and radius, metres, that together cover a polygon; (0, 3) of a disc.
-
-        The polygon is cut across its longer side into pieces, and each has its disc.
-        """
-        if self.is_disc:
-            return np.empty((0, 3))
-        low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
-        axis = int(np.argmax(high - low))
-        cuts = np.linspace(low[axis], high[axis], PIECES + 1)
-        discs = []
-        for begin, end in pairwise(cuts):
-            corners = [v for v in self.vertices if begin <= v[axis] <= end]
-            for a, b in zip(self.vertices, np.roll(self.vertices, -1, axis=0), strict=True):
-                for cut in (begin, end):
-                    if min(a[axis], b[axis]) < cut < max(a[axis], b[axis]):
-                        corners.append(a + (b - a) * (cut - a[axis]) / (b[axis] - a[axis]))
-            piece = np.array(corners)
-            centre = 0.5 * (piece.min(axis=0) + piece.max(axis=0))
-            discs.append((*centre, np.hypot(*(piece - centre).T).max()))
-        return np.array(discs)
-
-    def covers(self, points: npt.NDArray[np.float64], margin: float) -> npt.NDArray[np.bool_]:
-        """Whether points (n, 2) lie within the footprint, each side moved out by ``margin`` (m)."""
-        inside = np.hypot(points[:, 0], points[:, 1]) <= self.circumscribed + margin
-        for corner, after in zip(self.vertices, np.roll(self.vertices, -1, axis=0), strict=True):
-            (dx, dy), (x, y) = after - corner, (points - corner).T
-            inside &= dx * y - dy * x >= -margin * math.hypot(dx, dy)
-        return np.asarray(inside)
-
-    @property
-    def is_disc(self) -> bool:
-        """Whether the footprint is a disc."""
-        return len(self.vertices) == 0
-
-
-def _cross(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-
-
-def _readonly(array: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    array = np.ascontiguousarray(array, dtype=np.float64)
-    array.flags.writeable = False
-    return array
-
-
 @dataclass(frozen=True)
 class Robot:
     """A differential-drive robot: its limits, its footprint and the lidar it carries.
@@ -216,12 +102,6 @@ class Robot:
         """
         limits = Limits(v_max, 1.5, v_max, 3.0, v_max, 3.0, v_min=-0.25 * v_max)
         return Robot(name, limits, Footprint.disc(radius), Lidar(range_max=10.0))
-
-
-def box(length: float, width: float) -> Footprint:
-    """A rectangular footprint, ``length`` along x and ``width`` along y, in metres, centred."""
-    x, y = length / 2, width / 2
-    return Footprint.polygon([(x, -y), (x, y), (-x, y), (-x, -y)])
 
 
 class Robots(dict[str, Robot]):

@@ -7,9 +7,10 @@ import pytest
 from driving import LIMITS, ROUND, room
 from dynastar.bench import bound
 from dynastar.bench.bound import least_time, shortest_length, time_bound
+from dynastar.footprint import Footprint
 from dynastar.geometry import Goal
 from dynastar.grid import GridFrame, OccupancyGrid
-from dynastar.robot import Footprint, Robot
+from dynastar.robot import Robot
 from dynastar.simulation import Mover, Scenario
 
 TOLERANCE = 0.25

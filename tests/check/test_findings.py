@@ -15,9 +15,10 @@ from dynastar.check.doors import ways_of
 from dynastar.check.finding import LEVELS, worst
 from dynastar.check.loop import loop
 from dynastar.errors import InputError
+from dynastar.footprint import Footprint, box
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import NavigatorConfig, configured
-from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot, box
+from dynastar.robot import ROBOTS, Lidar, Limits, Robot
 
 GOOD = replace(ROBOTS["pioneer3dx"], lidar=Lidar(720, math.tau, 0.1, 10.0))
 DECLARED = {"latency": 0.1, "range_error": 0.03, "pose_error": 0.02, "heading_error": 0.01}

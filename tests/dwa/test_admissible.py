@@ -18,9 +18,10 @@ from dynastar.dwa.admissible import (
 )  # fmt: skip
 from dynastar.dwa.dwa import body_of, rules_of
 from dynastar.dwa.motion import driven, moved, state_at
+from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, Twist
 from dynastar.perception import MovingObstacle
-from dynastar.robot import ROBOTS, Footprint, Limits, Robot, arc, slew
+from dynastar.robot import ROBOTS, Limits, Robot, arc, slew
 from naive import slack_of_constraint
 from scenes import (
     CELL,

@@ -18,8 +18,9 @@ from dynastar.dwa.clearance import (
     polygon_distance,
 )
 from dynastar.dwa.motion import Pose
+from dynastar.footprint import Footprint
 from dynastar.perception.local_map_kernels import BOX
-from dynastar.robot import ROBOTS, Footprint, Robot
+from dynastar.robot import ROBOTS, Robot
 from naive import footprint_gaps, slack_of_constraint
 from scenes import (
     CELL,

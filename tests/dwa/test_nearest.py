@@ -7,8 +7,9 @@ from dynastar.dwa.dwa import DynamicWindow, StopStart, _records
 from dynastar.dwa.motion import command_towards
 from dynastar.dwa.nearest import PARTS
 from dynastar.dwa.scene import Surroundings
+from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, Twist
-from dynastar.robot import Footprint, Limits, Robot
+from dynastar.robot import Limits, Robot
 from scenes import PERIOD, boxed, scattered, scene_of
 
 LIMITS = Limits(1.2, 1.5, 0.8, 2.0, 0.8, 2.0, v_min=-0.4)

@@ -20,8 +20,9 @@ from dynastar.dwa.rollout import (
     tail_speeds,
 )
 from dynastar.dwa.scene import BACK, FOLLOW, STOP, TAILS, Manoeuvre
+from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, Twist
-from dynastar.robot import ROBOTS, Footprint, Limits, Robot
+from dynastar.robot import ROBOTS, Limits, Robot
 from scenes import CELL, boxed, empty, rules_for, scattered, scene_of, start_of
 
 LIMITS = Limits(1.0, 1.5, 0.8, 2.0, 0.8, 2.0, v_min=-0.3)

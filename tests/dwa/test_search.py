@@ -18,9 +18,10 @@ from dynastar.dwa.scene import AT_REST, BACK, FOLLOW, STOP, Manoeuvre
 from dynastar.dwa.search import FOLLOW_NOW, LAST, SAMPLES
 from dynastar.dwa.terms import evaluate, objective, passes_clear, risk, state_value
 from dynastar.dwa.window import possible, reachable
+from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, Twist
 from dynastar.perception import MovingObstacle
-from dynastar.robot import ROBOTS, Footprint, Limits, Robot, arc, slew
+from dynastar.robot import ROBOTS, Limits, Robot, arc, slew
 from scenes import (
     PERIOD,
     boxed,

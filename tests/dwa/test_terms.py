@@ -12,10 +12,11 @@ from dynastar.dwa import terms as t
 from dynastar.dwa.motion import state_at
 from dynastar.dwa.rollout import ROW
 from dynastar.dwa.scene import FOLLOW, Manoeuvre
+from dynastar.footprint import Footprint
 from dynastar.guidance.cost_to_go import turn_to_descent, value_at
 from dynastar.perception import MovingObstacle, PredictionConfig
 from dynastar.perception.prediction import WEIGHTS, predict
-from dynastar.robot import ROBOTS, Footprint, Limits, Robot, slew
+from dynastar.robot import ROBOTS, Limits, Robot, slew
 from scenes import STEP, STEPS, boxed, empty, field_of, rules_for, scene_of, start_of
 
 LIMITS = Limits(1.0, 1.5, 0.8, 2.0, 0.8, 2.0, v_min=-0.3)

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from dynastar.dwa.motion import Pose, state_at
 from dynastar.dwa.turning import KEPT_WITHIN, has_room_to_turn, place_to_turn
-from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot
+from dynastar.footprint import Footprint
+from dynastar.robot import ROBOTS, Lidar, Limits, Robot
 from naive import slack_of_constraint
 from scenes import CELL, boxed, boxes_of, rules_for, scattered, scene_of
 

@@ -8,10 +8,11 @@ import pytest
 
 from dynastar import io
 from dynastar.errors import ScenarioError
+from dynastar.footprint import Footprint
 from dynastar.geometry import Goal
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.io.examples import example_scenarios
-from dynastar.robot import Footprint, Robot
+from dynastar.robot import Robot
 from dynastar.simulation import (
     ControlLoop,
     Drivetrain,

@@ -11,10 +11,11 @@ from numba.core.registry import CPUDispatcher
 
 from driving import LIMITS, PERIOD, Drive, room, under_way
 from dynastar.errors import InputError
+from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, Twist
 from dynastar.navigator import RobotState
 from dynastar.perception import MovingObstacle
-from dynastar.robot import Footprint, Lidar, Robot
+from dynastar.robot import Lidar, Robot
 from dynastar.scan import LaserScan
 from dynastar.simulation import warm_up
 

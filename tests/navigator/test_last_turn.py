@@ -6,11 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from driving import room
+from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, Twist
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import Navigator, NavigatorConfig, RobotState
 from dynastar.navigator.last_turn import turn_by
-from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot, slew
+from dynastar.robot import ROBOTS, Lidar, Limits, Robot, slew
 from dynastar.simulation import Scenario, World
 
 LIMITS = Limits(0.6, 1.0, 1.0, 2.0, 1.0, 2.0, v_min=-0.3)

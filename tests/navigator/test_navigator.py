@@ -7,13 +7,14 @@ import pytest
 
 from driving import LIMITS, PERIOD, REST, ROUND, Drive, room, under_way
 from dynastar.errors import GoalOccupied, InputError, NoPath, OutOfMap
+from dynastar.footprint import Footprint
 from dynastar.geometry import Goal
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import Navigator
 from dynastar.navigator.config import PRESETS
 from dynastar.navigator.navigator import FINE
 from dynastar.perception import MovingObstacle
-from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot
+from dynastar.robot import ROBOTS, Lidar, Limits, Robot
 from dynastar.simulation.lidar import LidarSimulator
 
 BACKING = Robot("backing", LIMITS._replace(v_min=-0.5), ROUND.footprint, ROUND.lidar)

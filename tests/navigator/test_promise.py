@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 
 from dynastar.errors import PlanningError
+from dynastar.footprint import Footprint
 from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.navigator import Navigator
-from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot, slew
+from dynastar.robot import ROBOTS, Lidar, Limits, Robot, slew
 from dynastar.simulation import Noise, Scenario, run
 from dynastar.simulation.contact import Solids
 

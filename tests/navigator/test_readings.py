@@ -6,10 +6,11 @@ import pytest
 
 from driving import ROUND, with_ranges
 from dynastar.errors import ConfigError
+from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D
 from dynastar.navigator import NavigatorConfig
 from dynastar.navigator.readings import NAMED_AFTER, Readings
-from dynastar.robot import Footprint, Lidar
+from dynastar.robot import Lidar
 from dynastar.scan import LaserScan
 
 CONFIG = NavigatorConfig(range_error=0.01, pose_error=0.02)

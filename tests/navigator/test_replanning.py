@@ -12,12 +12,13 @@ import pytest
 from driving import REST, ROUND, Drive, room
 from dynastar.dwa.scene import AT_REST
 from dynastar.errors import InputError, NoPath
+from dynastar.footprint import Footprint
 from dynastar.geometry import Goal, Twist
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import Navigator
 from dynastar.path import Path
 from dynastar.planning import GridPlanner, PlannerConfig
-from dynastar.robot import ROBOTS, Footprint
+from dynastar.robot import ROBOTS
 
 SQUARE = np.array([(1.5, 1.5), (6.5, 1.5), (6.5, 4.5), (1.5, 4.5), (1.5, 2.0)])
 

@@ -3,10 +3,11 @@
 import numpy as np
 
 from driving import LIMITS
+from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, Twist
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.navigator import Navigator, RobotState
-from dynastar.robot import Footprint, Lidar, Robot
+from dynastar.robot import Lidar, Robot
 from dynastar.simulation.lidar import LidarSimulator
 
 

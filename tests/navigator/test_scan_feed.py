@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 from driving import ROUND, Drive, room, under_way, with_ranges
+from dynastar.footprint import Footprint
 from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import RobotState
 from dynastar.navigator.scan_feed import FIRST_WAIT, REPEATED
-from dynastar.robot import Footprint, Lidar
+from dynastar.robot import Lidar
 from dynastar.simulation.lidar import LidarSimulator
 
 SHORT_SIGHTED = replace(ROUND, lidar=Lidar(360, math.tau, 0.1, 3.5))

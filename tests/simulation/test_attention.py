@@ -5,9 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from dynastar.footprint import Footprint, box
 from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.grid import OccupancyGrid
-from dynastar.robot import Footprint, Limits, Robot, box
+from dynastar.robot import Limits, Robot
 from dynastar.simulation.detour import ROUND_GAP, encounter
 from dynastar.simulation.movers import gap_to_discs
 from dynastar.simulation.run import drive

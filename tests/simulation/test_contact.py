@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dynastar.errors import ScenarioError
+from dynastar.footprint import Footprint, box
 from dynastar.geometry import Pose2D
 from dynastar.grid import GridFrame, OccupancyGrid
-from dynastar.robot import Footprint, box
 from dynastar.simulation.contact import Solids, occupied_runs
 
 TRIANGLE = np.array([[0.0, 0.0], [1.0, 0.2], [0.3, 0.9]])

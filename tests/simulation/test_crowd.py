@@ -8,9 +8,10 @@ import pytest
 import shapely
 
 from dynastar.errors import ScenarioError
+from dynastar.footprint import Footprint
 from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.grid import OccupancyGrid
-from dynastar.robot import ROBOTS, Footprint
+from dynastar.robot import ROBOTS
 from dynastar.simulation import Mover, Pedestrian, Scenario, World
 from dynastar.simulation.contact import Solids
 from dynastar.simulation.crowd import Crowd, jupedsim_installed

@@ -5,9 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from dynastar.footprint import Footprint
 from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.grid import OccupancyGrid
-from dynastar.robot import Footprint, Limits, Robot
+from dynastar.robot import Limits, Robot
 from dynastar.simulation import Drivetrain, Odometry, Scenario, World
 
 QUICK = Robot("quick", Limits(1.0, 1.0, 50.0, 50.0, 50.0, 50.0, v_min=-0.5), Footprint.disc(0.3))

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from dynastar.errors import ScenarioError
+from dynastar.footprint import Footprint
 from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.io import load_episode, save_episode
-from dynastar.robot import Footprint, Lidar, Limits, Robot
+from dynastar.robot import Lidar, Limits, Robot
 from dynastar.simulation import Fault, Noise, Scenario, drive
 
 PERIOD = 0.1

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from dynastar.errors import ScenarioError
+from dynastar.footprint import Footprint, box
 from dynastar.geometry import Pose2D
-from dynastar.robot import Footprint, box
 from dynastar.simulation.movers import Movers
 from dynastar.simulation.scenario import Mover
 

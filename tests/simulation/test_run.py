@@ -16,10 +16,11 @@ from dynastar.errors import (
     ScenarioError,
     StartOccupied,
 )
+from dynastar.footprint import Footprint
 from dynastar.geometry import Goal, Twist, wrap_angle
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.path import Path
-from dynastar.robot import Footprint, Limits, Robot
+from dynastar.robot import Limits, Robot
 from dynastar.simulation import (
     ControlLoop,
     Drivetrain,

@@ -7,9 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dynastar.errors import InputError, ScenarioError
+from dynastar.footprint import Footprint, box
 from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.grid import GridFrame, OccupancyGrid
-from dynastar.robot import ROBOTS, Footprint, Limits, Robot, box
+from dynastar.robot import ROBOTS, Limits, Robot
 from dynastar.simulation.scenario import Mover, Noise, Scenario
 from dynastar.simulation.world import SUBSTEP, World
 

@@ -11,8 +11,9 @@ from driving import room
 from dynastar import io
 from dynastar.cli import main
 from dynastar.errors import DataError
+from dynastar.footprint import Footprint
 from dynastar.geometry import Goal
-from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot
+from dynastar.robot import ROBOTS, Lidar, Limits, Robot
 from dynastar.simulation import Noise, Scenario
 from dynastar.simulation.imperfections import ControlLoop, Drivetrain, LidarDriver, Odometry, Post
 from dynastar.tune.measured import measured, robot_toml

@@ -13,9 +13,9 @@ from PIL import Image
 
 from dynastar.episode import Episode, PlanRecord
 from dynastar.errors import InputError
+from dynastar.footprint import box
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.path import Path as Line
-from dynastar.robot import box
 from dynastar.terminal import printable
 from dynastar.viewer.animation import animate_episode
 from dynastar.viewer.commands import draw_commands

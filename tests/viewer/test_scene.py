@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from dynastar.episode import Episode, PlanRecord
+from dynastar.footprint import box
 from dynastar.metrics import measure
-from dynastar.robot import box
 from dynastar.viewer import scene
 
 NO_CELLS = np.empty((0, 2), dtype=np.int32)

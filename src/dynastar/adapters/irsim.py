@@ -16,10 +16,11 @@ import numpy.typing as npt
 from irsim.lib import register_behavior_class
 
 from dynastar.errors import InputError
+from dynastar.footprint import Footprint
 from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import Navigator, RobotState, configured
-from dynastar.robot import Footprint, Lidar, Limits, Robot
+from dynastar.robot import Lidar, Limits, Robot
 from dynastar.scan import LaserScan
 
 Settings = Mapping[str, Any] | None

@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 from navground.core import Behavior, Frame, Kinematics, SensingState, Twist2
 
+from dynastar.footprint import Footprint
 from dynastar.geometry import Goal, Pose2D, Twist, wrap_angle
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import Navigator, RobotState, configured
-from dynastar.robot import Footprint, Lidar, Limits, Robot
+from dynastar.robot import Lidar, Limits, Robot
 from dynastar.scan import LaserScan
 
 REVERSE, FOR_SPEED = 0.3, 0.8  # at most: m/s backwards; of the wheels' speed, without turning

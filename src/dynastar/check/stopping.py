@@ -6,9 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from dynastar.footprint import Footprint
 from dynastar.navigator.config import NavigatorConfig, fitted, margin_of
 from dynastar.perception.hidden import SLACK
-from dynastar.robot import Footprint, Lidar, Limits, Robot
+from dynastar.robot import Lidar, Limits, Robot
 
 RIM_POINTS = 180  # of a circle
 

@@ -15,6 +15,7 @@ from dynastar import simulation
 from dynastar.config import checked, choose, nearest, shown
 from dynastar.episode import Episode
 from dynastar.errors import ConfigError, InputError, MapError, OutOfMap, ScenarioError
+from dynastar.footprint import Footprint
 from dynastar.geometry import Goal
 from dynastar.grid import OccupancyGrid
 from dynastar.io.files import MAX_TABLE_BYTES, read_bytes
@@ -24,7 +25,7 @@ from dynastar.io.scenario_tables import MapTable, PlaceTable, RobotTable, Scenar
 from dynastar.io.scenario_things import contains, read_mover, read_obstacle
 from dynastar.masks import SpeedScale, with_keepout, with_speed_limits
 from dynastar.navigator import NavigatorConfig
-from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot
+from dynastar.robot import ROBOTS, Lidar, Limits, Robot
 from dynastar.simulation.run import effective_config
 from dynastar.simulation.scenario import Noise, Scenario
 from dynastar.simulation.start import check_start

@@ -4,12 +4,12 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.errors import GoalOccupied, NoPath, PlanningError, StartOccupied
+from dynastar.footprint import Footprint
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.waiting_place import waiting_place, ways_to
 from dynastar.perception.planning_map import Patch, PlanningMap
 from dynastar.planning import GridPlanner, Plan, Planner, plan_by
-from dynastar.robot import Footprint
 
 Point = tuple[float, float]
 

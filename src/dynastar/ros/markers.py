@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, Twist
 from dynastar.navigator import RobotState, Status
-from dynastar.robot import Footprint, arc
+from dynastar.robot import arc
 from dynastar.ros.outgoing import Colour, Messages
 
 AHEAD = 1.0  # s for which a candidate's arc is drawn

@@ -6,8 +6,9 @@ from typing import Annotated, Any, Literal, NamedTuple, get_args, get_origin, ge
 
 from dynastar.config import Field, checked
 from dynastar.errors import ConfigError
+from dynastar.footprint import Footprint
 from dynastar.navigator import Preset
-from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot
+from dynastar.robot import ROBOTS, Lidar, Limits, Robot
 from dynastar.ros.localization import PoseSource
 
 AGE = Field("largest age of scan and odometry before the robot brakes", "s", 0.05, 2.0)

@@ -6,8 +6,8 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, Twist
-from dynastar.robot import Footprint
 from dynastar.simulation.contact import RESTING
 from dynastar.simulation.detour import Detour, encounter, find_detour
 from dynastar.simulation.movers import Movers

@@ -7,9 +7,9 @@ import numpy.typing as npt
 import shapely
 
 from dynastar.errors import ScenarioError
+from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D
 from dynastar.grid import OccupancyGrid
-from dynastar.robot import Footprint
 from dynastar.simulation.rings import made_of
 
 Floats = npt.NDArray[np.float64]

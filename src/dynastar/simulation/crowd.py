@@ -18,9 +18,9 @@ import shapely
 
 from dynastar.errors import ScenarioError
 from dynastar.extras import how_to_install
+from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D
 from dynastar.grid import OccupancyGrid
-from dynastar.robot import Footprint
 from dynastar.simulation.contact import occupied_runs
 from dynastar.simulation.scenario import Pedestrian
 

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, Twist, wrap_angle
-from dynastar.robot import Footprint
 
 Floats = npt.NDArray[np.float64]
 

@@ -8,8 +8,8 @@ import numpy.typing as npt
 
 from dynastar.config import nearest
 from dynastar.errors import ScenarioError
+from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D
-from dynastar.robot import Footprint
 from dynastar.simulation import movers_kernels as kernels
 from dynastar.simulation.scenario import Mover
 

@@ -11,10 +11,11 @@ from dynastar.bench.suites import people as suite
 from dynastar.bench.suites import people_crowd, people_routes, people_scripts, people_witness
 from dynastar.bench.suites.people_sites import SITES, Site
 from dynastar.errors import DataError
+from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D
 from dynastar.grid import OccupancyGrid
 from dynastar.path import Path
-from dynastar.robot import ROBOTS, Footprint
+from dynastar.robot import ROBOTS
 from dynastar.simulation import Mover
 from dynastar.simulation.contact import Solids, placed_footprint
 from dynastar.simulation.crowd import jupedsim_installed

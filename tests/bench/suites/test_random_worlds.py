@@ -12,9 +12,10 @@ from dynastar.bench.suites import random_worlds as suite
 from dynastar.bench.suites.random_kinds import KINDS
 from dynastar.bench.suites.random_layout import CAREFUL, CELL, SPARE, Layout, StaticWorld, narrow
 from dynastar.bench.suites.random_truth import TrueSpace
+from dynastar.footprint import Footprint, box
 from dynastar.geometry import Pose2D
 from dynastar.grid import GridFrame, OccupancyGrid
-from dynastar.robot import ROBOTS, Footprint, box
+from dynastar.robot import ROBOTS
 from dynastar.simulation.contact import Solids
 
 NUMBERS = range(18)

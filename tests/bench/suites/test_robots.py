@@ -19,8 +19,9 @@ from dynastar.bench.suites.robots_worlds import (
     draw_map,
     grown,
 )
+from dynastar.footprint import Footprint, box
 from dynastar.geometry import Pose2D
-from dynastar.robot import Footprint, Lidar, box
+from dynastar.robot import Lidar
 from dynastar.simulation import ControlLoop, Drivetrain, Noise, World
 from dynastar.simulation.contact import Solids
 from dynastar.simulation.run import effective_config

@@ -6,9 +6,9 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, compose
 from dynastar.grid import OccupancyGrid, Unknown
-from dynastar.robot import Footprint
 from dynastar.scan import LaserScan
 
 Floats = npt.NDArray[np.float64]

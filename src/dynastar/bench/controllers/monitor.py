@@ -7,9 +7,9 @@ of the parameter file that comes with Nav2's package, in the robot's frame.
 
 import numpy as np
 
+from dynastar.footprint import Footprint
 from dynastar.geometry import Twist
 from dynastar.navigator import Guarded
-from dynastar.robot import Footprint
 from dynastar.scan import LaserScan
 
 STOP_ZONE = Footprint.polygon([(0.3, 0.3), (0.3, -0.3), (0.0, -0.3), (0.0, 0.3)])

@@ -7,9 +7,9 @@ import numpy.typing as npt
 import shapely
 
 from dynastar.episode import Episode
+from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, Twist
 from dynastar.grid import GridFrame, OccupancyGrid
-from dynastar.robot import Footprint
 from dynastar.simulation import World
 from dynastar.simulation.contact import RESTING, placed_footprint
 

@@ -37,8 +37,9 @@ from dynastar.bench.suites.crowdnav_people import (
     draw_walks,
 )
 from dynastar.bench.suites.crowdnav_robots import OrcaWorld, Passenger, ToldNavigator
+from dynastar.footprint import Footprint
 from dynastar.geometry import Goal
-from dynastar.robot import Footprint, Lidar, Limits, Robot
+from dynastar.robot import Lidar, Limits, Robot
 from dynastar.simulation import Noise, Scenario, World, run
 
 DEFAULT_MISSIONS = None

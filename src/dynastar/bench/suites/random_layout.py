@@ -7,8 +7,8 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
+from dynastar.footprint import Footprint
 from dynastar.grid import OccupancyGrid
-from dynastar.robot import Footprint
 
 Floats = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]

@@ -21,7 +21,7 @@ import shapely
 from dynastar.bench.suites.random_layout import CAREFUL, Point, StaticWorld
 from dynastar.clearance import distance_field
 from dynastar.compiled import njit
-from dynastar.robot import Footprint
+from dynastar.footprint import Footprint
 
 Mask = npt.NDArray[np.bool_]
 

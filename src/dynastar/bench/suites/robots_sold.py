@@ -7,7 +7,8 @@ the radius of the TurtleBot 4, and all of the cart and the AGV, which stand for 
 import math
 from typing import NamedTuple
 
-from dynastar.robot import ROBOTS, Footprint, Lidar, Limits, Robot
+from dynastar.footprint import Footprint
+from dynastar.robot import ROBOTS, Lidar, Limits, Robot
 from dynastar.simulation import Post
 
 

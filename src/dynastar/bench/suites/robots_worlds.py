@@ -22,11 +22,12 @@ from dynastar.bench.suites.random_layout import BOARD, Layout, StaticWorld, turn
 from dynastar.bench.suites.random_truth import TrueSpace
 from dynastar.clearance import distance_field
 from dynastar.errors import PlanningError
+from dynastar.footprint import Footprint
 from dynastar.geometry import Goal, Pose2D
 from dynastar.grid import OccupancyGrid
 from dynastar.path import Path
 from dynastar.planning import GridPlanner, PlannerConfig
-from dynastar.robot import Footprint, Robot
+from dynastar.robot import Robot
 
 Floats = npt.NDArray[np.float64]
 Random = np.random.Generator
