@@ -11,7 +11,6 @@ from dynastar.guidance.travel_cost import (
     NEAR_COST,
     Encounter,
     add_encounters,
-    discount_along,
     travel_cost,
 )
 from dynastar.perception import MovingObstacle, PredictionConfig
@@ -78,13 +77,3 @@ def test_every_cell_costs_what_all_encounters_on_arrival_do(seed):
                 discounted = math.exp(-times[k] / CONFIG.memory) * (p * moving.weights).sum()
                 expected += ENCOUNTER_COST * discounted
         assert cost.values[row, column] == pytest.approx(expected)
-
-
-def test_the_line_that_was_followed_is_discounted_once():
-    cost = cost_of(20, 20)
-    cost.values[5, 5] = np.inf
-    line = np.array([(0.55, 0.55), (0.56, 0.55), (1.05, 0.55), (-3.0, 9.0)])
-    discount_along(cost, line, 0.85)
-    assert sorted(set(cost.values.ravel())) == [0.85, 1.0, np.inf]
-    assert (cost.values[4:7, 4:7] != 1.0).all()
-    assert (cost.values[8:] == 1.0).all()

@@ -12,19 +12,17 @@ from dynastar.field import Field
 from dynastar.guidance.cost_to_go import CostToGo, find_descent, trace, value_at
 from dynastar.guidance.marching import extend, march, queue_for
 from dynastar.guidance.seed import nearest_open, path_exit_cell
-from dynastar.guidance.travel_cost import Encounter, add_encounters, discount_along, travel_cost
+from dynastar.guidance.travel_cost import Encounter, add_encounters, travel_cost
 from dynastar.path import Path
 from dynastar.perception.prediction import Prediction
 
 Floats = npt.NDArray[np.float64]
 
 FACTOR = 2  # cells of the local map to one of the cost-to-go
-FOLLOWED_COST = 0.85  # of the cost along the line that was followed before, so that it is kept to
-LINE_POINTS = 50  # of that line
+LINE_POINTS = 50  # of the descent from the robot
 KNOWN_BEYOND = 3.0  # m that the cost-to-go is known beyond the robot
 OFF_PATH_COST = 6.0  # extra cost of a metre 1 m or more beside a path that is kept to
 OPEN_WITHIN = 6  # cells to the nearest one where the robot fits, at most
-NO_LINE = np.empty((0, 2))
 
 
 class PathTarget(NamedTuple):
@@ -85,12 +83,10 @@ class Guidance:
         target: PathTarget,
         moving: Prediction,
         encounter: Encounter,
-        followed: Floats = NO_LINE,
     ) -> Guide:
         """The way to the goal for a robot at the place of ``encounter``.
 
-        ``obstacles`` are distances to the local map's obstacles; ``followed`` (n, 2) is the line of
-        the tick before, which is preferred.
+        ``obstacles`` are distances to the local map's obstacles.
         """
         a, x0, y0 = self.resolution, obstacles.x0, obstacles.y0
         cost = Field(self._cost, x0, y0, a)
@@ -101,7 +97,6 @@ class Guidance:
         if target.is_given:
             self._cost += OFF_PATH_COST * np.minimum(to_path.values, 1.0)
         add_encounters(cost, moving, encounter)
-        discount_along(cost, followed, FOLLOWED_COST)
         stop = self._cell_of(encounter.x - x0, encounter.y - y0)
         march(self._cost, a, self._seed(target, cost), stop, KNOWN_BEYOND, self._value, self._queue)
         extend(self._value, a, self._filled)

@@ -89,18 +89,3 @@ def add_encounters(cost, moving, encounter):
                         p = contact_probability(math.sqrt(square) - near, deviation)
                         p *= moving.weights[h] * moving.discount[k] * encounter.discount
                         cost.values[row, column] += ENCOUNTER_COST * p
-
-
-@njit(cache=True)
-def discount_along(cost, line, factor):
-    """Scale the cost (a Field) of the cells along a ``line`` (n, 2) and beside it, each once."""
-    rows, columns = cost.values.shape
-    done = np.zeros((rows, columns), np.bool_)
-    for k in range(len(line)):
-        column = int((line[k, 0] - cost.x0) / cost.resolution)
-        row = int((line[k, 1] - cost.y0) / cost.resolution)
-        for i in range(max(row - 1, 0), min(row + 2, rows)):
-            for j in range(max(column - 1, 0), min(column + 2, columns)):
-                if not done[i, j]:
-                    done[i, j] = True
-                    cost.values[i, j] *= factor

@@ -6,7 +6,6 @@ from dynastar.dwa.dwa import Choice, Stops
 from dynastar.dwa.scene import AT_REST, Manoeuvre, Scene
 from dynastar.geometry import Pose2D, Twist
 from dynastar.guidance import Encounter, Guidance, Guide, PathTarget
-from dynastar.guidance.guidance import NO_LINE
 from dynastar.navigator.admissibility import Admissibility
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.sensing import View
@@ -18,10 +17,7 @@ GIVEN_PATH_WEIGHT = 3.0  # least weight sigma of keeping to a path given by the 
 
 
 class Driving(Admissibility):
-    """One robot's guidance and dynamic window, and what they keep from tick to tick.
-
-    That is the rest of the last manoeuvre, and the line that was followed.
-    """
+    """One robot's guidance and dynamic window, and the rest of the last manoeuvre."""
 
     def __init__(self, robot: Robot, config: NavigatorConfig, local_map: LocalMap) -> None:
         super().__init__(robot, config)
@@ -42,7 +38,7 @@ class Driving(Admissibility):
         return self.robot.limits.v_max * step * steps
 
     def carry_on(self, before: "Driving") -> None:
-        """Take over the manoeuvre and the line of the driving that this one replaces."""
+        """Take over what the driving that this one replaces kept."""
         self._last, self.guide = before._last, before.guide
 
     def forget_manoeuvre(self) -> None:
@@ -73,7 +69,7 @@ class Driving(Admissibility):
         )
 
     def _guided(self, view: View, target: PathTarget, pose: Pose2D) -> Guide:
-        """The cost-to-go for a robot at ``pose``, which prefers the line of the last tick."""
+        """The cost-to-go for a robot at ``pose``."""
         begin, step, _ = self.times
         encounter = Encounter(
             x=pose.x,
@@ -84,7 +80,4 @@ class Driving(Admissibility):
             step=step,
             discount=math.exp(-begin / self.config.prediction.memory),
         )
-        followed = NO_LINE if self.guide is None else self.guide.line
-        return self.guidance.update(
-            view.distance_to_obstacle, target, view.moving, encounter, followed
-        )
+        return self.guidance.update(view.distance_to_obstacle, target, view.moving, encounter)
