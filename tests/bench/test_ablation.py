@@ -3,14 +3,13 @@
 import numpy as np
 import pytest
 
-from dynastar.bench import ablation, paper, terms
-from dynastar.bench.ablation import ARMS
+from dynastar.bench import ablation, arms, paper, terms
+from dynastar.bench.arms import ARMS, run_mission
 from dynastar.bench.controllers.printed import Printed
 from dynastar.bench.families import Map, draw
 from dynastar.bench.follower import Follower
 from dynastar.bench.missions import Mission, Options
 from dynastar.bench.selection import choose_missions
-from dynastar.bench.statistics import wilson
 from dynastar.bench.suites import people
 from dynastar.bench.tables import as_text
 from dynastar.navigator import PRESETS, configured
@@ -39,7 +38,7 @@ def test_each_arm_differs_from_the_default_as_it_says():
     expected = {
         "default": set(),
         "printed": set(),
-        "Eq. 2: k = 0": {heuristic + "k"},
+        "Eq. 2: k = 0": {heuristic + "k", "planner.exact"},
         "no exact improvement": {"planner.exact"},
         "Eq. 9: alpha = 0": {"dwa.weights.heading"},
         "Eq. 9: beta = 0": {"dwa.weights.dist"},
@@ -72,7 +71,11 @@ def test_each_arm_differs_from_the_default_as_it_says():
     assert others == {"printed": Printed, "path following alone": Follower}
     for arm in (arm for arm in ARMS if arm.startswith("Eq. 2: ")):
         assert settings(arm)._replace(planner=DEFAULT.planner) == DEFAULT
-        assert settings(arm).planner.exact
+        assert changed(settings(arm), settings(ARMS[arm].base)) <= {
+            "planner.planner",
+            *(heuristic + name for name in HeuristicConfig._fields),
+        }
+    assert {ARMS[arm].base for arm in ARMS if not arm.startswith("Eq. 2: ")} == {"default"}
     assert len({settings(arm) for arm in ARMS}) == len(ARMS) - len(others)
 
 
@@ -120,36 +123,45 @@ ROWS = [
 ]
 
 
-def test_ratios_are_world_by_world_over_those_that_both_arrived_in():
-    found = ablation.summary(ROWS)
+def test_a_summary_has_every_arm_of_each_suite_beside_its_base():
+    found = ablation.summary(
+        [*ROWS, row(0, "Eq. 2: k = 0"), row(0, "no exact improvement", time=30.0)]
+    )
     assert list(found) == ["paper", "people"]
-    assert list(found["paper"]) == ["default", "no reverse"]
-    default, forward = found["paper"].values()
+    assert list(found["paper"]) == [
+        "default",
+        "Eq. 2: k = 0",
+        "no exact improvement",
+        "no reverse",
+    ]
+    default, eq_2, not_exact, forward = found["paper"].values()
     assert (default["missions"], default["arrived"], default["contacts_moving"]) == (5, 3, 1)
-    assert (default["timeouts"], default["length_ratio"], default["common"]) == (1, 1.0, 3)
-    assert (forward["arrived"], forward["blocked"], forward["errors"], forward["common"]) == (
-        3,
-        1,
-        1,
-        2,
-    )
-    assert forward["mean_time"] == pytest.approx(280.0 / 3)
-    assert forward["length_ratio"] == pytest.approx((1.1 + 1.0) / 2)
-    assert forward["time_ratio"] == pytest.approx((1.5 + 2.0) / 2)
-    low, high = forward["time_ratio_interval"]
-    assert (low, high) == pytest.approx((1.5, 2.0))
-    assert default["touched_interval"] == wilson(1, 5)
-    nothing = ablation.summary([row(0, "paper", "error")])["paper"]["paper"]
-    assert (
-        nothing["mean_length"] is nothing["length_ratio"] is nothing["time_ratio_interval"] is None
-    )
+    assert (default["time_ratio"], default["inert"]) == (1.0, True)
+    assert (forward["lost"], forward["gained"], forward["time_ratio"]) == (1, 1, 1.75)
+    assert (eq_2["time_ratio"], not_exact["time_ratio"]) == (2.0, 0.5)
+
+
+def test_p_is_corrected_over_all_arms_but_the_default():
+    # Of six worlds lost and none gained p is 2 / 2^6; three arms are compared.
+    rows = [row(n, "default") for n in range(6)]
+    rows += [row(n, "no risk", "timeout") for n in range(6)]
+    rows += [row(n, arm) for n in range(6) for arm in ("no reverse", "no hysteresis")]
+    found = ablation.summary(rows)["paper"]
+    assert found["no risk"]["p"] == pytest.approx(2 / 64)
+    assert found["no risk"]["p_holm"] == pytest.approx(3 * 2 / 64)
+    assert found["no reverse"]["p_holm"] == 1.0
 
 
 def test_the_tables_have_a_line_for_each_arm_by_its_effect():
     worse = [row(n, "no risk", "contact", contacts_resting=1) for n in (0, 2)]
-    of_paper, of_people = ablation.tables([*ROWS, *worse])
-    assert [cells[0] for cells in of_paper.cells[1:]] == ["default", "no risk", "no reverse"]
-    assert of_paper.cells[3][-2:] == ["1.750", "1.50 to 2.00"]
+    same = [{**of, "arm": "no hysteresis"} for of in ROWS[:-1:2]]
+    of_paper, of_people = ablation.tables([*ROWS, *worse, *same])
+    lines = {cells[0]: cells[6:] for cells in of_paper.cells[1:]}
+    assert list(lines) == ["default", "no risk", "no reverse", "no hysteresis"]
+    assert lines["default"] == [""] * 8
+    assert lines["no risk"][:4] == ["2", "0", "1.000", "0"]
+    assert lines["no reverse"][-2:] == ["1.750", "1.50 to 2.00"]
+    assert lines["no hysteresis"][:3] == ["0", "0", "inert"]
     assert "5 worlds of the suite paper" in as_text(of_paper)
     assert len(of_people.cells) == 2
 
@@ -159,22 +171,22 @@ def test_rows_come_world_by_world_and_an_error_is_one(tmp_path, monkeypatch):
         assert scenario.seed == 7
         raise RuntimeError("no")
 
-    monkeypatch.setattr(ablation, "drive", drive)
+    monkeypatch.setattr(arms, "drive", drive)
     monkeypatch.setattr(ablation, "SUITES", ("paper",))
     rows = ablation.run(2, 7, tmp_path / "out")
     assert [row["arm"] for row in rows] == list(ARMS) * 2
     assert len({row["number"] for row in rows[: len(ARMS)]}) == 1
     assert {row["outcome"] for row in rows} == {"error"}
-    monkeypatch.setattr(ablation, "drive", None)
+    monkeypatch.setattr(arms, "drive", None)
     assert ablation.run(2, 7, tmp_path / "out") == rows
 
 
 def test_arms_drive_as_they_say():
     scenario = paper.world(0, 5)
-    default = ablation.run_mission(scenario, "default")
+    default = run_mission(scenario, ARMS["default"])
     suites = paper.run_mission(Mission(5), Options(), 0)
     assert default["length"] == suites["length"]
-    follower = ablation.run_mission(scenario, "path following alone")
+    follower = run_mission(scenario, ARMS["path following alone"])
     assert (follower["outcome"], follower["contacts_moving"]) == ("contact", 1)
 
 
@@ -189,9 +201,9 @@ def test_in_the_people_suite_an_arm_keeps_the_suites_own_settings():
         raise RuntimeError("no")
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ablation, "drive", drive)
-        ablation.run_mission(scenario, "no risk", {"comfort": 0.2})
-        ablation.run_mission(scenario, "period 0.2 s")
+        patch.setattr(arms, "drive", drive)
+        run_mission(scenario, ARMS["no risk"], {"comfort": 0.2})
+        run_mission(scenario, ARMS["period 0.2 s"])
     assert seen[0] == {**scenario.navigator, "comfort": 0.2, "dwa": {"weights": {"risk": 0.0}}}
     assert (own, seen[1]["period"]) == (0.05, 0.2)
 

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from dynastar.bench.statistics import (
     bootstrap,
+    holm,
     mcnemar,
     pairs_needed,
     succeeded,
@@ -53,6 +54,22 @@ def test_bootstrap_is_about_the_normal_interval_and_repeats():
     assert bootstrap(values) == (low, high)
     assert bootstrap([1.0]) is None
     assert bootstrap([2.0, 2.0]) == (2.0, 2.0)
+
+
+def test_holm_by_hand():
+    # Sorted: 0.01 x 4, 0.02 x 3, then 0.03 x 2 (not below the one before), 0.9 x 1.
+    assert holm([0.9, 0.01, 0.03, 0.02]) == pytest.approx([0.9, 0.04, 0.06, 0.06])
+    assert holm([0.6, 0.5]) == [1.0, 1.0]
+    assert holm([]) == []
+
+
+@given(st.lists(st.floats(0.0, 1.0), min_size=1, max_size=8))
+def test_holm_rejects_as_its_steps_do(p_values):
+    left = sorted(p_values)
+    rejected = 0
+    while rejected < len(left) and left[rejected] <= 0.05 / (len(left) - rejected):
+        rejected += 1
+    assert sum(p <= 0.05 for p in holm(p_values)) == rejected
 
 
 def row(outcome, **more):

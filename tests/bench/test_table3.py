@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynastar.bench import ablation, paper, table3
+from dynastar.bench import arms, paper, table3
 from dynastar.bench.controllers.printed import Printed
 from dynastar.bench.tables import as_markdown, as_text
 from dynastar.grid import OccupancyGrid
@@ -121,7 +121,7 @@ def test_rows_are_made_once_and_an_error_is_one(tmp_path, monkeypatch):
         flown.append((scenario.name, scenario.preset, scenario.seed, navigator))
         raise RuntimeError("no")
 
-    monkeypatch.setattr(ablation, "drive", drive)
+    monkeypatch.setattr(arms, "drive", drive)
     rows = table3.run(3, 0, tmp_path / "out")
     assert [row["number"] for row in rows] == [0, 2, 4]  # 1 and 3 are left out by the rule
     assert [row["outcome"] for row in rows] == ["error"] * 3

@@ -1,13 +1,22 @@
 """The arms of the ablation: what is left out or read differently, one thing at a time."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 from dynastar.bench.controllers.printed import Printed
 from dynastar.bench.follower import Follower
+from dynastar.bench.missions import row_of
+from dynastar.bench.settings import merged
+from dynastar.metrics import measure
 from dynastar.navigator import Preset
 from dynastar.planning import HeuristicConfig
-from dynastar.simulation import Controller
+from dynastar.simulation import Controller, Scenario
+from dynastar.simulation import run as drive
+
+# The modules of bench that the rows of an arm in the suite paper depend on.
+SOURCES = ("arms", "follower", "paper", "own_maps", "settings", "controllers/printed",
+           "controllers/base", "controllers/costmap", "controllers/route")  # fmt: skip
 
 ALL_TERMS = HeuristicConfig()
 PLAIN = HeuristicConfig(exponential=False, parent=False, k=0.0, weight=1.0)
@@ -26,18 +35,38 @@ TERMS: dict[str, tuple[str, HeuristicConfig]] = {
 
 
 BASE_TERMS = "Eq. 2: all terms"  # what the default has
+BASE = "default"
+NOT_EXACT = "no exact improvement"
 
 
 class Arm(NamedTuple):
-    """An arm: a preset, settings that differ from it, or a controller in the navigator's place."""
+    """An arm: a preset, settings that differ from it, or a controller in the navigator's place.
+
+    ``base`` names the arm that it is compared with.
+    """
 
     preset: Preset = "default"
     navigator: Mapping[str, Any] = {}
     controller: Callable[..., Controller] | None = None
+    base: str = BASE
+
+
+def run_mission(
+    scenario: Scenario, arm: Arm, settings: Mapping[str, Any] | None = None
+) -> dict[str, Any]:
+    """Drives a world the way of an arm and returns its metrics; "error" if that raises.
+
+    ``settings`` of the navigator are over those of the preset, but below those of the arm.
+    """
+    navigator = merged(merged(scenario.navigator, settings or {}), arm.navigator)
+    driven = replace(scenario, preset=arm.preset, navigator=navigator)
+    return row_of(lambda: measure(drive(driven, navigator=arm.controller))._asdict())
 
 
 def _terms(planner: str, heuristic: HeuristicConfig) -> Arm:
-    return Arm(navigator={"planner": {"planner": planner, "heuristic": heuristic._asdict()}})
+    """Other terms without the exact search, which would replace most of their paths."""
+    planning = {"planner": planner, "heuristic": heuristic._asdict(), "exact": False}
+    return Arm(navigator={"planner": planning}, base=NOT_EXACT)
 
 
 def _navigator(**settings: Any) -> Arm:
@@ -53,11 +82,11 @@ def _weights(**weights: float) -> Arm:
 
 
 ARMS: dict[str, Arm] = {
-    "default": Arm(),
+    BASE: Arm(),
     "paper": Arm("paper"),
     "printed": Arm(controller=Printed),
     **{name: _terms(*terms) for name, terms in TERMS.items() if terms != TERMS[BASE_TERMS]},
-    "no exact improvement": _navigator(planner={"exact": False}),
+    NOT_EXACT: _navigator(planner={"exact": False}),
     "Eq. 9: alpha = 0": _weights(heading=0.0),
     "Eq. 9: beta = 0": _weights(dist=0.0),
     "Eq. 9: gamma = 0": _weights(vel=0.0),

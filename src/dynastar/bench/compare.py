@@ -17,7 +17,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from dynastar.bench.statistics import bootstrap, mcnemar, pairs_needed, succeeded
+from dynastar.bench.statistics import bootstrap, lost_and_gained, mcnemar, pairs_needed
 from dynastar.errors import InputError
 from dynastar.io.files import MAX_TEXT_BYTES, read_bytes
 
@@ -106,9 +106,8 @@ def compare_suite(name: str, first: Result, second: Result) -> dict[str, Any]:
         for a, b in pairs
         if a["outcome"] != b["outcome"]
     ]
-    only_first = [a["number"] for a, b in pairs if succeeded(a) and not succeeded(b)]
-    only_second = [a["number"] for a, b in pairs if succeeded(b) and not succeeded(a)]
-    p = mcnemar(len(only_first), len(only_second))
+    lost, gained = lost_and_gained(pairs)
+    p = mcnemar(len(lost), len(gained))
     time, length = _difference(pairs, "time"), _difference(pairs, "length")
     return {
         "missions": len(pairs),
@@ -120,12 +119,12 @@ def compare_suite(name: str, first: Result, second: Result) -> dict[str, Any]:
         },
         "totals": {key: [first.get(key), second.get(key)] for key in COUNTS},
         "changed": changed,
-        "lost": only_first,
-        "gained": only_second,
+        "lost": lost,
+        "gained": gained,
         "p_success": p,
         "time": time,
         "length": length,
-        "verdict": verdict((len(only_first), len(only_second), len(pairs)), p, time),
+        "verdict": verdict((len(lost), len(gained), len(pairs)), p, time),
     }
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from dynastar.bench import ablation, presets, table1, table1_tables, table3, targets, terms
+from dynastar.bench.arms import BASE
 from dynastar.bench.families import KINDS
 from dynastar.bench.figures import SUFFIXES, draw_all
 from dynastar.bench.tables import Table, as_markdown
@@ -136,7 +137,7 @@ def report_ablation(asked: Asked) -> Report:
         {"ablation": found, "terms": terms.summary(on_maps)},
         [*terms.tables(on_maps), *ablation.tables(rows)],
         {"ablation": rows, "terms": on_maps},
-        draw_columns(_columns(found), best=ablation.BASE),
+        draw_columns(_columns(found), best=BASE),
     )
 
 
@@ -155,7 +156,7 @@ def _columns(found: Mapping[str, Mapping[str, Any]]) -> list[Column]:
             "touched_interval",
             percent,
         ),
-        "time / default's": (lambda of: of["time_ratio"], "time_ratio_interval", None),
+        "time / base's": (lambda of: of["time_ratio"], "time_ratio_interval", None),
     }
     return [
         Column(

@@ -41,6 +41,29 @@ def mcnemar(only_first: int, only_second: int) -> float:
     return float(binomtest(only_first, n).pvalue) if n else 1.0
 
 
+def lost_and_gained(pairs: Iterable[tuple[Row, Row]]) -> tuple[list[int], list[int]]:
+    """Numbers of the missions that only the first, and only the second, of two results succeeded in.
+
+    A pair is the rows of one mission, as ``mcnemar`` compares them.
+    """
+    lost: list[int] = []
+    gained: list[int] = []
+    for first, second in pairs:
+        if succeeded(first) != succeeded(second):
+            (lost if succeeded(first) else gained).append(first["number"])
+    return lost, gained
+
+
+def holm(p_values: Sequence[float]) -> list[float]:
+    """Holm's correction of p values for the number of tests [Holm1979], in the order given."""
+    order = sorted(range(len(p_values)), key=lambda at: p_values[at])
+    corrected, largest = [1.0] * len(p_values), 0.0
+    for rank, at in enumerate(order):
+        largest = max(largest, min(1.0, (len(p_values) - rank) * p_values[at]))
+        corrected[at] = largest
+    return corrected
+
+
 def pairs_needed(only_first: int, only_second: int, pairs: int) -> int | None:
     """How many pairs would show a difference of that size, by the sample size of [Connor1987].
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from dynastar.bench import paper
-from dynastar.bench.ablation import OF_ARMS, run_mission
+from dynastar.bench.arms import ARMS, SOURCES, run_mission
 from dynastar.bench.missions import Options
 from dynastar.bench.rows import collect
 from dynastar.bench.selection import choose_missions
@@ -44,7 +44,7 @@ def run(
     folder.mkdir(parents=True, exist_ok=True)
     chosen, _ = choose_missions(paper, Options(missions=missions, seed=seed))
     jobs = [mission.number for mission in chosen]
-    run_of: Row = {"table": 3, "seed": seed, "arm": arm, "version": version("table3", *OF_ARMS)}
+    run_of: Row = {"table": 3, "seed": seed, "arm": arm, "version": version("table3", *SOURCES)}
     run_of |= {"settings": settings} if settings else {}
     work = partial(_row, seed=seed, arm=arm, settings=settings)
     file = folder / f"table3-{arm}.jsonl"
@@ -251,7 +251,7 @@ def _row(number: int, seed: int, arm: str, settings: Mapping[str, Any] | None) -
 
 
 def _both(scenario: Scenario, seed: int, arm: str, settings: Mapping[str, Any] | None) -> Row:
-    driven = run_mission(replace(scenario, seed=seed), arm, settings)
+    driven = run_mission(replace(scenario, seed=seed), ARMS[arm], settings)
     return {**driven, **grid_way(scenario)}
 
 
