@@ -11,7 +11,14 @@ from hypothesis import strategies as st
 from dynastar.bench.controllers import controller_named
 from dynastar.bench.controllers import printed as p
 from dynastar.bench.controllers.costmap import Costmap
-from dynastar.bench.controllers.printed import GlobalPath, Printed, Settings, Terms, Trajectories
+from dynastar.bench.controllers.printed import (
+    GlobalPath,
+    Printed,
+    PrintedReplanning,
+    Settings,
+    Terms,
+    Trajectories,
+)
 from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.grid import OccupancyGrid
 from dynastar.metrics import measure
@@ -161,7 +168,7 @@ def test_the_intermediate_target_is_where_the_path_leaves_the_circle():
 
 
 def test_the_path_is_planned_anew_only_where_the_robot_has_left_it():
-    route = GlobalPath(Costmap(field(), "blocked"), ROBOT, stray=1.0)
+    route = GlobalPath(Costmap(field(), "blocked"), ROBOT, SETTINGS)
     goal = Goal(20.0, 5.0)
     assert route.update((5.0, 5.0), goal, 0.0)
     assert route.plan.planner == "improved"
@@ -169,6 +176,34 @@ def test_the_path_is_planned_anew_only_where_the_robot_has_left_it():
     assert route.s == pytest.approx(2.0, abs=0.1)
     assert route.update((7.0, 6.2), goal, 20.0)
     assert route.path.at(0.0) == pytest.approx((7.0, 6.2))
+
+
+@pytest.mark.parametrize("replan_blocked", [False, True])
+def test_a_path_blocked_by_something_seen_is_planned_anew_in_that_reading_alone(replan_blocked):
+    costmap = Costmap(field(), "blocked")
+    route = GlobalPath(costmap, ROBOT, SETTINGS._replace(replan_blocked=replan_blocked))
+    goal = Goal(20.0, 5.0)
+    route.update((5.0, 5.0), goal, 0.0)
+    row, column = (int(at) for at in costmap.grid.frame.to_grid(12.0, 5.0))
+    route.mark((row, column, np.ones((1, 1), bool)))
+    assert route.update((7.0, 5.0), goal, 10.0) == replan_blocked
+    if replan_blocked:
+        apart = np.hypot(*(route.path.points - (12.0, 5.0)).T).min()
+        assert apart > RADIUS
+        assert not route.update((7.0, 5.0), goal, 10.1)
+
+
+def test_the_target_of_the_second_reading_is_a_metre_ahead(monkeypatch):
+    seen = []
+
+    def target(path, s, here, radius):
+        seen.append(radius)
+        return path.resampled(s, s + radius, 0.1)
+
+    monkeypatch.setattr(p, "path_to_target", target)
+    for controller in (Printed, PrintedReplanning):
+        drive(mission(time_limit=0.3), navigator=controller)
+    assert sorted(set(seen)) == [1.0, 4.5]
 
 
 def test_the_command_turns_towards_the_target_and_speeds_up():
@@ -184,7 +219,7 @@ def test_the_command_turns_towards_the_target_and_speeds_up():
 
 def mission(**more):
     made = Scenario("field", field(), ROBOT, (5.0, 5.0, None), (Goal(20.0, 20.0),))
-    return replace(made, goal_tolerance=0.5, time_limit=120.0, **more)
+    return replace(made, **{"goal_tolerance": 0.5, "time_limit": 120.0, **more})
 
 
 def test_it_arrives_where_nothing_stands_and_keeps_to_the_limits():
@@ -203,3 +238,5 @@ def test_it_gives_up_without_recovery_before_an_obstacle_of_which_the_map_does_n
     found = measure(episode)
     assert (found.outcome, found.recoveries) == ("blocked", 0)
     assert "no progress" in episode.reason
+    second = measure(drive(mission(obstacles=(square,)), navigator=PrintedReplanning))
+    assert second.outcome == "arrived"

@@ -20,6 +20,7 @@ from dynastar.bench.tables import Cell, Table
 from dynastar.bench.versions import version
 from dynastar.simulation import Scenario
 
+WORLDS = 100  # of each suite, unless another number is asked for
 SUITES = ("paper", "people")
 SOURCES = (*OF_ARMS, "ablation", "driven", "suites/people", "suites/people_crowd",
            "suites/people_routes", "suites/people_scripts", "suites/people_sites",

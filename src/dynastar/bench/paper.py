@@ -65,12 +65,15 @@ def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, An
 
 
 @lru_cache(maxsize=4)
-def world(seed: int, number: int) -> Scenario | str:
-    """The scenario of a number, or why the rule leaves it out."""
+def world(seed: int, number: int, occupied: float = OCCUPIED) -> Scenario | str:
+    """The scenario of a number, or why the rule leaves it out.
+
+    ``occupied`` is the fraction of the map's cells; that of the suite unless another is given.
+    """
     rng = np.random.default_rng([seed, number])
     free_cells = np.array([c for c in range(CELLS * CELLS) if c not in (0, CELLS * CELLS - 1)])
     flat = np.zeros(CELLS * CELLS, bool)
-    flat[rng.choice(free_cells, round(OCCUPIED * CELLS * CELLS), replace=False)] = True
+    flat[rng.choice(free_cells, round(occupied * CELLS * CELLS), replace=False)] = True
     return furnished(f"paper {number}", flat.reshape(CELLS, CELLS))
 
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from dynastar.bench import ablation, presets, table1, table1_tables, table3, targets, terms
+from dynastar.bench import ablation, clutter, presets, table1, table1_tables, table3, targets, terms
 from dynastar.bench.arms import BASE
 from dynastar.bench.families import KINDS
 from dynastar.bench.figures import SUFFIXES, draw_all
@@ -23,16 +23,21 @@ Rows = Sequence[Mapping[str, Any]]
 class Asked(NamedTuple):
     """Extent of a report: number of maps and worlds, seed, folder, processes.
 
-    ``settings`` of the navigator are over those of each preset, but below those of an arm.
+    Without ``worlds`` each report has its own number of them. ``settings`` of the navigator are over
+    those of each preset, but below those of an arm.
     """
 
     maps: int
-    worlds: int
+    worlds: int | None
     seed: int
     folder: Path
     workers: int = 1
     progress: bool = False
     settings: Mapping[str, Any] = {}
+
+    def worlds_or(self, usual: int) -> int:
+        """The number of worlds asked for, else the ``usual`` one, and no more than maps."""
+        return min(self.worlds or usual, self.maps)
 
 
 class Report(NamedTuple):
@@ -130,7 +135,8 @@ def report_ablation(asked: Asked) -> Report:
     """The ablation: on worlds, and the terms of Eq. 2 on maps, too."""
     seed, folder, workers, progress, settings = asked[2:]
     on_maps = terms.run(asked.maps, seed, folder, workers, progress=progress)
-    rows = ablation.run(asked.worlds, seed, folder, workers, progress, settings)
+    worlds = asked.worlds_or(ablation.WORLDS)
+    rows = ablation.run(worlds, seed, folder, workers, progress, settings)
     found = ablation.summary(rows)
     return Report(
         "ablation",
@@ -180,6 +186,15 @@ def _scaled(interval: Sequence[float] | None, factor: float) -> tuple[float, flo
     return None if interval is None else (factor * interval[0], factor * interval[1])
 
 
+def report_clutter(asked: Asked) -> Report:
+    """The controller ``printed`` over clutter, in two readings."""
+    seed, folder, workers, progress, _ = asked[2:]
+    rows = clutter.run(asked.worlds_or(clutter.WORLDS), seed, folder, workers, progress)
+    return Report(
+        "clutter", {"clutter": clutter.summary(rows)}, [clutter.table(rows)], {"clutter": rows}
+    )
+
+
 def report_presets(asked: Asked) -> Report:
     """The settings in which the presets differ."""
     del asked
@@ -211,6 +226,7 @@ REPORTS: dict[str, Callable[[Asked], Report]] = {
     "presets": report_presets,
     "table1": report_table1,
     "table3": report_table3,
+    "clutter": report_clutter,
     "figures": report_figures,
     "ablation": report_ablation,
 }

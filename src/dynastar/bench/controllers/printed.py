@@ -47,6 +47,15 @@ class Settings(NamedTuple):
     stray: Annotated[
         float, Field("distance from the path at which the robot has left it", "m", 0.01, 100.0)
     ] = 1.0
+    target: Annotated[
+        float,
+        Field(
+            "distance of the intermediate target; 0: v_max for the simulation time", "m", 0.0, 100.0
+        ),
+    ] = 0.0
+    replan_blocked: Annotated[
+        bool, Field("plan anew where something seen blocks the path, too")
+    ] = False
 
 
 # -- IV.A: kinematics ------------------------------------------------------------------------------
@@ -206,16 +215,21 @@ def evaluated(terms: Terms, settings: Settings) -> Floats:
 class GlobalPath(PlannedPath):
     """Steps 1 and 4: the path of the improved A* (Eqs. 2 and 3), planned anew after straying."""
 
-    def __init__(self, costmap: Costmap, robot: Robot, stray: float) -> None:
-        radius = robot.footprint.circumscribed + PADDING
-        super().__init__(costmap, [radius], PlannerConfig(planner="improved"))
-        self._stray = stray
+    def __init__(self, costmap: Costmap, robot: Robot, settings: Settings) -> None:
+        self._radius = robot.footprint.circumscribed + PADDING
+        super().__init__(costmap, [self._radius], PlannerConfig(planner="improved"))
+        self._settings = settings
 
     def update(self, here: tuple[float, float], goal: Goal, now: float) -> bool:
-        """Plans where there is no path, or where the robot is farther than ``stray`` from it."""
+        """Plans where there is no path, or the robot is farther than ``stray`` from it.
+
+        With ``replan_blocked`` also where the path is blocked.
+        """
         if self.path is not None:
             self.s = self.path.project(*here, low=self.s - 0.5, high=self.s + 2.0)
-            if math.dist(here, self.path.at(self.s)) <= self._stray:
+            strayed = math.dist(here, self.path.at(self.s)) > self._settings.stray
+            blocked = self._settings.replan_blocked and self.blocked(self._radius)
+            if not (strayed or blocked):
                 return False
         self.drop()
         self.plan, self.s = self.planners[0].plan(here, (goal.x, goal.y)), 0.0
@@ -240,7 +254,7 @@ class Printed(PathController):
 
     def make_route(self) -> GlobalPath:
         """Step 1: the global path."""
-        return GlobalPath(self.costmap, self.robot, self.settings.stray)
+        return GlobalPath(self.costmap, self.robot, self.settings)
 
     def follow(self, state: RobotState) -> Twist | None:
         """Step 3: the admissible velocity with the largest G; None where none is admissible."""
@@ -260,7 +274,10 @@ class Printed(PathController):
         end = Trajectories(*(part[:, -1] for part in curves))
         assert self.route.path is not None
         path = path_to_target(
-            self.route.path, self.route.s, state.pose, limits.v_max * settings.time
+            self.route.path,
+            self.route.s,
+            state.pose,
+            settings.target or limits.v_max * settings.time,
         )
         terms = Terms(
             heading(end, path[-1]),
@@ -277,3 +294,9 @@ class Printed(PathController):
         disc = np.array([[0.0, 0.0, self.robot.footprint.circumscribed]])
         poses = np.column_stack([part.ravel() for part in curves])
         return around.gaps(poses, disc).reshape(curves.x.shape)
+
+
+class PrintedReplanning(Printed):
+    """The second reading: it replans for unknown obstacles, too, and its target is 1 m ahead."""
+
+    settings = Settings(target=1.0, replan_blocked=True)

@@ -52,6 +52,15 @@ class PlannedPath(ABC):
         """Forgets the path, so that the next ``update`` plans."""
         self.plan = None
 
+    def blocked(self, radius: float) -> bool:
+        """Whether the path from ``s`` on is blocked for the disc of the last planner's ``radius`` (m)."""
+        assert self.path is not None
+        rest = self.path.points[self.path.arc > self.s + 1e-6]
+        if len(rest) == 0:
+            return False
+        ahead = np.vstack([self.path.at(self.s), rest])
+        return self.planners[-1].path_blocked_at(ahead, 0.9 * radius) is not None
+
     @abstractmethod
     def update(self, here: tuple[float, float], goal: Goal, now: float) -> bool:
         """Follows the progress of the robot, ``here`` (m), and plans; True for a new path.
@@ -80,7 +89,7 @@ class Route(PlannedPath):
         blocked = False
         if self.path is not None:
             self.s = self.path.project(*here, low=self.s - 0.3, high=self.s + 2.0)
-            blocked = self._blocked()
+            blocked = self.blocked(self._narrow)
         if self.plan is not None and not blocked and now - self._planned_at < PERIOD:
             return False
         if blocked and now - self._planned_at < 0.2 * PERIOD:
@@ -96,14 +105,6 @@ class Route(PlannedPath):
             return False
         self.plan, self.s = new, 0.0
         return True
-
-    def _blocked(self) -> bool:
-        assert self.path is not None
-        rest = self.path.points[self.path.arc > self.s + 1e-6]
-        if len(rest) == 0:
-            return False
-        ahead = np.vstack([self.path.at(self.s), rest])
-        return self.planners[-1].path_blocked_at(ahead, 0.9 * self._narrow) is not None
 
     def _best(self, start: tuple[float, float], goal: tuple[float, float]) -> Plan:
         *roomy, narrow = self.planners
