@@ -9,7 +9,17 @@ from pathlib import Path
 
 import pytest
 
-from dynastar.bench import ablation, clutter, presets, table1, table1_tables, table3, targets, terms
+from dynastar.bench import (
+    ablation,
+    clutter,
+    ladder,
+    presets,
+    table1,
+    table1_tables,
+    table3,
+    targets,
+    terms,
+)
 from dynastar.bench.table1 import LARGE
 from dynastar.bench.tables import as_markdown
 from dynastar.cli import main
@@ -93,6 +103,7 @@ def test_every_table_of_the_experiments_has_its_place_on_the_page():
         "table3",
         "table3-presets",
         "clutter",
+        "ladder",
         "ablation-paper",
         "ablation-people",
         "terms",
@@ -101,6 +112,7 @@ def test_every_table_of_the_experiments_has_its_place_on_the_page():
     for module, name in (
         (table3, "table3"),
         (clutter, "clutter"),
+        (ladder, "ladder"),
         (terms, "terms"),
         (targets, "targets"),
     ):

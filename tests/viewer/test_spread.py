@@ -6,7 +6,7 @@ import pytest
 from matplotlib.patches import Rectangle
 
 from dynastar.viewer.sheet import save
-from dynastar.viewer.spread import Column, Spread, draw_columns, draw_spreads
+from dynastar.viewer.spread import Column, Spread, draw_columns, draw_parts, draw_spreads
 
 RNG = np.random.default_rng(5)
 VALUES = {
@@ -65,6 +65,15 @@ def test_columns_have_each_arms_number():
         assert words == [*(format(v, column.format) for v in shown), "–"]
     names = [label.get_text() for label in figure.axes[0].get_yticklabels()]
     assert names == ["default", "paper", "none"]
+
+
+def test_parts_follow_one_another_in_a_bar():
+    parts = {"arrived": {"a": 60.0, "b": 0.0}, "hit": {"a": 30.0, "b": 90.0}}
+    (axes,) = draw_parts("worlds, %", parts).axes
+    bars = [[(bar.get_x(), bar.get_width()) for bar in bars] for bars in axes.containers]
+    assert bars == [[(0.0, 60.0), (0.0, 0.0)], [(60.0, 30.0), (0.0, 90.0)]]
+    assert [text.get_text() for text in axes.texts] == ["60", "0"]
+    assert axes.get_xlim() == (0.0, 90.0)
 
 
 def test_intervals_are_lines_through_the_dots():

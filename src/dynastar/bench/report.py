@@ -5,14 +5,24 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from dynastar.bench import ablation, clutter, presets, table1, table1_tables, table3, targets, terms
+from dynastar.bench import (
+    ablation,
+    clutter,
+    ladder,
+    presets,
+    table1,
+    table1_tables,
+    table3,
+    targets,
+    terms,
+)
 from dynastar.bench.arms import BASE
 from dynastar.bench.families import KINDS
 from dynastar.bench.figures import SUFFIXES, draw_all
 from dynastar.bench.tables import Table, as_markdown
 from dynastar.io.files import written_aside
 from dynastar.viewer.sheet import save
-from dynastar.viewer.spread import Column, Spread, draw_columns, draw_spreads
+from dynastar.viewer.spread import Column, Spread, draw_columns, draw_parts, draw_spreads
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -195,6 +205,20 @@ def report_clutter(asked: Asked) -> Report:
     )
 
 
+def report_ladder(asked: Asked) -> Report:
+    """From the controller ``printed`` to the default navigator, a change at a time."""
+    seed, folder, workers, progress, settings = asked[2:]
+    rows = ladder.run(asked.worlds_or(ladder.WORLDS), seed, folder, workers, progress, settings)
+    found = ladder.summary(rows)
+    return Report(
+        "ladder",
+        {"ladder": found},
+        [ladder.table(found)],
+        {"ladder": rows},
+        draw_parts("worlds, %", ladder.outcomes(found)),
+    )
+
+
 def report_presets(asked: Asked) -> Report:
     """The settings in which the presets differ."""
     del asked
@@ -227,6 +251,7 @@ REPORTS: dict[str, Callable[[Asked], Report]] = {
     "table1": report_table1,
     "table3": report_table3,
     "clutter": report_clutter,
+    "ladder": report_ladder,
     "figures": report_figures,
     "ablation": report_ablation,
 }

@@ -35,6 +35,8 @@ examples:
             the controller printed; 40 minutes for 1000
   clutter   the controller printed in two readings over worlds with 0, 5, 10 and 20 % of the map's cells
             occupied; 15 minutes for 50 of each
+  ladder    the controller printed made the default navigator, a change at a time, over worlds of the
+            suite paper; 1 hour for 200
   ablation  each term of Eqs. 2 and 9 left out or read otherwise, and each part of the whole, on worlds
             of the suites paper and people; 2 hours for 100 of each
   figures   Figs. 1 to 8; 10 seconds
@@ -48,7 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "what",
         nargs="?",
-        choices=("presets", "table1", "table3", "clutter", "ablation", "figures", "all"),
+        choices=("presets", "table1", "table3", "clutter", "ladder", "ablation", "figures", "all"),
         default="all",
         help="default all",
     )
@@ -63,8 +65,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--worlds",
         type=count,
         metavar="N",
-        help="worlds of each suite in the ablation (default 100) and of each density in clutter "
-        "(default 50), no more than --maps",
+        help="worlds of each suite in the ablation (default 100), of each density in clutter (50) "
+        "and of ladder (200), no more than --maps",
     )
     parser.add_argument("--seed", type=seed, default=0, metavar="N")
     parser.add_argument("--out", type=path, metavar="DIR", help="default out/paper")

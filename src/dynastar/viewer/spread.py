@@ -1,4 +1,4 @@
-"""Tables as pictures: how measures spread over kinds of maps, and arms side by side in dots."""
+"""Tables as pictures: spreads over kinds of maps, arms side by side in dots, outcomes in bars."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
@@ -22,6 +22,8 @@ BOX: dict[str, Any] = {"facecolor": palette.EXPLORED, "edgecolor": palette.FIRST
 MEDIAN: dict[str, Any] = {"color": palette.FIRST_PATH, "linewidth": 1.8}
 WORST: dict[str, Any] = {"linestyle": "none", "marker": "x", "color": palette.FAINT_INK}
 PRINTED: dict[str, Any] = {"linestyle": "none", "marker": "D", "color": palette.DRIVEN}
+
+PARTS = (palette.FIRST_PATH, palette.CONTACT, palette.KEEPOUT, palette.OBSTACLE)
 
 
 class Spread(NamedTuple):
@@ -137,6 +139,27 @@ def draw_columns(columns: Sequence[Column], width: float = PAGE, best: str | Non
         _finish(axes, column.label, column.log, len(arms))
         if column.range is not None:
             axes.set_xlim(column.range)
+    return figure
+
+
+def draw_parts(label: str, parts: Mapping[str, Mapping[str, float]], width: float = PAGE) -> Figure:
+    """Arms down the side, a bar for each of its parts one after another (outcomes in per cent).
+
+    ``parts`` has the value of every arm by the name of the part; ``PARTS`` are drawn in that order.
+    """
+    arms = list(next(iter(parts.values())))
+    figure, (axes,) = _columns(arms, [label], width, legend=True)
+    begin = np.zeros(len(arms))
+    for colour, (name, values) in zip(PARTS, parts.items(), strict=False):
+        long = np.array([values[arm] for arm in arms])
+        axes.barh(range(len(arms)), long, 0.62, begin, color=colour, label=name, zorder=3)
+        begin += long
+    for row, arm in enumerate(arms):
+        _figure_beside(axes, row, f"{next(iter(parts.values()))[arm]:.0f}")
+    _finish(axes, label, False, len(arms))
+    axes.set_xlim(0.0, begin.max())
+    low = (0.5, 0.05 / figure.get_figheight())
+    figure.legend(loc="lower center", bbox_to_anchor=low, ncols=len(parts), **legend_style())
     return figure
 
 
