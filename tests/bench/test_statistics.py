@@ -1,6 +1,7 @@
 import math
 from itertools import product
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -53,6 +54,7 @@ def test_bootstrap_is_about_the_normal_interval_and_repeats():
     )
     assert bootstrap(values) == (low, high)
     assert bootstrap([1.0]) is None
+    assert bootstrap([0.0] * 99 + [1000.0], np.median) == (0.0, 0.0)
     assert bootstrap([2.0, 2.0]) == (2.0, 2.0)
 
 

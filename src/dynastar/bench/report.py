@@ -78,7 +78,7 @@ def report_table1(asked: Asked) -> Report:
     }
     groups = {
         kind: table1.ratios([row for row in rows if kind in (row["kind"], "all")])
-        for kind in ("all", *KINDS)
+        for kind in (*KINDS, "all")
     }
     return Report(
         "table1",

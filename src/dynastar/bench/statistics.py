@@ -78,8 +78,10 @@ def pairs_needed(only_first: int, only_second: int, pairs: int) -> int | None:
     return math.ceil((spread / by) ** 2)
 
 
-def bootstrap(values: Sequence[float]) -> Interval | None:
+def bootstrap(values: Sequence[float], of: Callable[..., Any] = np.mean) -> Interval | None:
     """95 % interval of the mean by the percentiles of resampled means; None under two values.
+
+    ``of`` is another function of the values than the mean, as NumPy has them.
 
     Seeded, so that the same values give the same interval.
     """
@@ -89,7 +91,7 @@ def bootstrap(values: Sequence[float]) -> Interval | None:
 
     random = np.random.default_rng(0)
     found = resample(
-        (values,), np.mean, n_resamples=RESAMPLES, method="percentile", random_state=random
+        (values,), of, n_resamples=RESAMPLES, method="percentile", random_state=random
     ).confidence_interval
     return float(found.low), float(found.high)
 

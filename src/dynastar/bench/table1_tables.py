@@ -5,7 +5,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from dynastar.bench.families import KINDS
-from dynastar.bench.table1 import LARGE, SIZE, Row, summary
+from dynastar.bench.pairs import interval_in_words
+from dynastar.bench.statistics import bootstrap
+from dynastar.bench.table1 import LARGE, SIZE, Row, ratios, summary
 from dynastar.bench.tables import Cell, Table
 
 # As printed: cells, length, milliseconds.
@@ -43,13 +45,13 @@ WORDS = {
 
 
 def tables(rows: Sequence[Row], own: Row, large: Sequence[Row] = ()) -> list[Table]:
-    """The own map's table in the paper's form, the spread by arm, by kind, and on large maps."""
+    """The own map's table in the paper's form, medians by kind, the pool by arm, and large maps."""
     found = [
         _own(own),
+        _by_kind("table1-kinds", rows, SIZE),
         _by_arm("cells", "cells expanded", rows, _cells),
         _by_arm("length", "length", rows, _length),
         _by_arm("time", "time, search and smoothing", rows, _seconds),
-        _by_kind("table1-kinds", rows, SIZE),
     ]
     return [*found, _by_kind(f"table1-{LARGE}", large, LARGE)] if large else found
 
@@ -84,50 +86,55 @@ def _by_arm(
     lines: list[tuple[Cell, ...]] = [
         (
             arm,
-            *_five([figure(row, *of) / figure(row, "traditional", None) for row in rows]),
+            *_spread([figure(row, *of) / figure(row, "traditional", None) for row in rows]),
         )
         for arm, of in shown[1:]
     ]
     if name == "length":
         lines += [
-            (bound, *_five([row[of]["length"] / row["traditional"]["length"] for row in rows]))
+            (bound, *_spread([row[of]["length"] / row["traditional"]["length"] for row in rows]))
             for bound, of in BOUNDS.items()
         ]
     return Table(
         f"table1-{name}",
         f"Table I over {len(rows)} maps: {words}, over the traditional A* (Euclidean)",
-        (("", ""), *((what, ".3f") for what in FIVE)),
+        (("", ""), *((what, ".3f") for what in FIVE), ("95 % of the median", "")),
         lines,
+        "Intervals are bootstrap intervals of the median over maps of all kinds.",
     )
 
 
 def _by_kind(name: str, rows: Sequence[Row], size: int) -> Table:
-    """Medians of the ratios for each kind of map, and what there is beside them."""
+    """Medians of the ratios for each kind of map with their intervals, and then over all of them."""
     found = summary(rows)
-    kinds = [kind for kind in ("all", *KINDS) if kind in found]
+    kinds = [kind for kind in (*KINDS, "all") if kind in found]
+    values = {kind: ratios([row for row in rows if kind in (row["kind"], "all")]) for kind in kinds}
     lines: list[tuple[Cell, ...]] = [
         (
             words,
-            *(found[kind][ratio]["median"] for kind in kinds),
-            *(found["all"][ratio][what] for what in ("mean", "p95", "worst")),
+            *(_median(values[kind][ratio]) for kind in kinds),
+            *(found["all"][ratio][what] for what in ("p95", "worst")),
             PRINTED_RATIOS.get(ratio) if size == SIZE else None,
         )
         for ratio, words in WORDS.items()
         if ratio in found["all"]
     ]
+    notes = ["In brackets: 95 % bootstrap intervals of the median."]
+    if "fast_ratio" in found["all"]:
+        notes.append(
+            "A smoothed path below the optimum over centres passes nearer to corners than those are."
+        )
     return Table(
         name,
         f"Improved over traditional A*, {len(rows)} maps of {size} x {size} cells: medians by kind",
         (
             ("", ""),
-            *((kind, ".3f") for kind in kinds),
-            *((f"all: {what}", ".3f") for what in ("mean", "p95", "worst")),
+            *((kind, "") for kind in kinds),
+            *((f"all: {what}", ".3f") for what in ("p95", "worst")),
             ("paper", ".3f"),
         ),
         lines,
-        "A smoothed path below the optimum over centres passes nearer to corners than those are."
-        if "fast_ratio" in found["all"]
-        else "",
+        " ".join(notes),
     )
 
 
@@ -145,5 +152,12 @@ def _seconds(row: Row, search: str, smoothing: str | None) -> float:
     return float(row[search]["seconds"] + more)
 
 
-def _five(values: Sequence[float]) -> list[float]:
-    return [float(q) for q in np.quantile(values, (0.25, 0.5, 0.75, 0.95, 1.0))]
+def _spread(values: Sequence[float]) -> tuple[Cell, ...]:
+    """The quantiles of ``FIVE``, and the interval of the median."""
+    quantiles = np.quantile(values, (0.25, 0.5, 0.75, 0.95, 1.0))
+    return (*map(float, quantiles), interval_in_words(bootstrap(values, np.median), 1.0, ".3f"))
+
+
+def _median(values: Sequence[float]) -> str:
+    interval = interval_in_words(bootstrap(values, np.median), 1.0, ".3f")
+    return f"{np.median(values):.3f}" + (f" ({interval})" if interval else "")
