@@ -42,7 +42,7 @@ def test_the_command_fills_a_page_with_table3(tmp_path, capsys):
     assert found["missions"] == 2
     assert {"arrived", "contacts_moving"} <= set(found)
     for ratio in ("length_ratio", "turning_ratio"):
-        assert set(found[ratio]) == {"median", "mean", "p95", "worst"}
+        assert set(found[ratio]) == {"median", "p95", "worst"}
     assert "| hybrid, length m |" in page.read_text()
     assert page.read_text().startswith("a\n<!-- table3 -->\n**Table III over 2 worlds**")
 

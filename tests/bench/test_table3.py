@@ -62,35 +62,35 @@ def test_every_bend_of_a_way_over_cells_counts():
         assert table3.grid_way(made)["grid_turning_points"] == bends > 0
 
 
-def test_ratios_are_over_what_arrived():
+def test_ratios_are_over_all_worlds_and_what_did_not_arrive_is_longer_than_any():
     found = table3.summary(ROWS)
     assert (found["missions"], found["arrived"]) == (5, 2)
     assert (found["contacts_moving"], found["contacts_resting"]) == (1, 0)
     assert (found["timeouts"], found["blocked"], found["errors"]) == (1, 0, 1)
-    assert found["length_ratio"] == pytest.approx(
-        {"median": 1.0, "mean": 1.0, "p95": 1.09, "worst": 1.1}
-    )
-    assert found["turning_ratio"]["worst"] == 2.0  # over one, where the way has none
-    assert found["turning_ratio"]["mean"] == pytest.approx(1.25)
-    assert found["length_ratio_of_means"] == 1.0
-    assert found["turning_ratio_of_means"] == 6 / 8
-    assert (found["mean_length"], found["mean_time"]) == (30.0, 60.0)
+    nothing = {"median": None, "p95": None, "worst": None}
+    assert found["length_ratio"] == found["turning_ratio"] == found["time"] == nothing
+    most = table3.summary(ROWS[:3])
+    assert most["length_ratio"] == pytest.approx({**nothing, "median": 1.1})
+    assert most["turning_ratio"]["median"] == 2.0  # over one, where the way has none
+    assert most["time"]["median"] == 66.0
+    all_arrived = table3.summary(ROWS[:2])
+    assert all_arrived["length_ratio"] == pytest.approx({"median": 0.9, "p95": 1.1, "worst": 1.1})
     assert (found["grid_hits"], found["grid_hits_disc"]) == (3, 4)
 
 
 def test_nothing_arrived_is_no_figure_and_no_error():
     found = table3.summary(ROWS[2:])
-    assert found["length_ratio"] is found["mean_time"] is found["turning_ratio_of_means"] is None
+    assert found["length_ratio"]["median"] is found["time"]["median"] is None
     for table in table3.tables({"default": ROWS[2:], "printed": ROWS[2:]}, ROWS[-1]):
         assert table.title in as_text(table)
 
 
 def test_the_tables_have_the_printed_figures_beside():
-    by_preset = {"default": ROWS, "printed": ROWS[2:]}
+    by_preset = {"default": ROWS[:3], "printed": ROWS[2:]}
     own, many, presets = table3.tables(by_preset, row(None, 28.0, 6, 32.0, 12))
     assert [cells[0] for cells in presets.cells] == ["", "default", "printed", "in print"]
-    assert presets.cells[1][1:3] == ["5", "2"]
-    assert presets.cells[1][7:] == ["1.000", "1.250", "60.0"]
+    assert presets.cells[1][1:3] == ["3", "2"]
+    assert presets.cells[1][7:] == ["1.100", "2.000", "66.0"]
     assert presets.cells[2][7:] == ["", "", ""]
     assert presets.cells[3][7:9] == ["0.879", "0.571"]
     assert own.cells[1:] == [
@@ -101,16 +101,16 @@ def test_the_tables_have_the_printed_figures_beside():
     assert tuple(many.cells[0][1:-1]) == FIVE
     assert many.cells[2] == [
         "hybrid, length m",
-        "30.00",
-        "28.50",
-        "31.50",
-        "32.70",
         "33.00",
+        "27.00",
+        "",
+        "",
+        "",
         "29.00",
     ]
     assert many.cells[6][0] == "turns, hybrid / improved A*"
-    assert "2 of 5 arrived, 1 touched" in many.notes
-    assert "3 worlds as a point" in many.notes
+    assert "2 of 3 arrived, 1 touched" in many.notes
+    assert "1 worlds as a point" in many.notes
     assert "| hybrid | 28.0 | 6 | 29 | 4 |" in as_markdown(own)
 
 

@@ -1,5 +1,6 @@
 """Table III: the improved A* alone against the hybrid, over many worlds and on the own one."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -15,7 +16,7 @@ from dynastar.bench.missions import Options
 from dynastar.bench.rows import collect
 from dynastar.bench.selection import choose_missions
 from dynastar.bench.statistics import wilson
-from dynastar.bench.tables import Cell, Table, spread_of
+from dynastar.bench.tables import Cell, Table
 from dynastar.bench.versions import version
 from dynastar.grid import OccupancyGrid
 from dynastar.planning import GridPlanner, plan
@@ -23,6 +24,7 @@ from dynastar.simulation import Scenario
 
 # As printed: path length, turning points.
 PRINTED = {"improved": (33, 7), "hybrid": (29, 4)}
+FIVE = (0.5, 0.25, 0.75, 0.95, 1.0)  # the quantiles that are shown
 
 Row = dict[str, Any]
 
@@ -77,22 +79,25 @@ def grid_way(scenario: Scenario) -> Row:
 
 
 def length_ratio(row: Row) -> float:
-    """Of a mission that arrived: the driven length over the improved A*'s grid path's."""
-    return float(row["length"] / row["grid_length"])
+    """The driven length over the improved A*'s grid path's; infinite if it did not arrive."""
+    return _driven(row, "length") / float(row["grid_length"])
 
 
 def turning_ratio(row: Row) -> float:
     """The same of turning points; over one where the grid path has none."""
-    return float(row["turning_points"] / max(1, row["grid_turning_points"]))
+    return _driven(row, "turning_points") / max(1.0, float(row["grid_turning_points"]))
+
+
+def _driven(row: Row, what: str) -> float:
+    return float(row[what]) if row["outcome"] == "arrived" else math.inf
 
 
 def summary(rows: Sequence[Row]) -> dict[str, Any]:
     """Totals of the rows: outcomes of all missions, and the hybrid over the improved A*'s path.
 
-    Ratios and means are over the missions that arrived, whether that way is free or not; None if
-    none did.
+    Ratios and time are over all worlds; one in which the robot did not arrive counts as longer than
+    any, and a quantile that lies there is None.
     """
-    arrived = [row for row in rows if row["outcome"] == "arrived"]
 
     def counted(outcome: str) -> int:
         return sum(row["outcome"] == outcome for row in rows)
@@ -100,29 +105,21 @@ def summary(rows: Sequence[Row]) -> dict[str, Any]:
     def contacts(kind: str) -> int:
         return sum(bool(row.get(f"contacts_{kind}")) for row in rows)
 
-    def mean(name: str) -> float | None:
-        return float(np.mean([row[name] for row in arrived])) if arrived else None
-
-    means = {name: mean(name) for name in ("length", "turning_points", "time")}
-    means |= {name: mean(name) for name in ("grid_length", "grid_turning_points")}
-
-    def of_means(name: str) -> float | None:
-        over, under = means[name], means[f"grid_{name}"]
-        return over / under if over is not None and under else None
+    def over_all(figure: Callable[[Row], float]) -> dict[str, float | None]:
+        found = _quantiles([figure(row) for row in rows], (0.5, 0.95, 1.0))
+        return dict(zip(("median", "p95", "worst"), found, strict=True))
 
     return {
         "missions": len(rows),
-        "arrived": len(arrived),
+        "arrived": counted("arrived"),
         "contacts_moving": contacts("moving"),
         "contacts_resting": contacts("resting"),
         "timeouts": counted("timeout"),
         "blocked": counted("blocked"),
         "errors": counted("error"),
-        "length_ratio": spread_of([length_ratio(row) for row in arrived]) if arrived else None,
-        "turning_ratio": spread_of([turning_ratio(row) for row in arrived]) if arrived else None,
-        "length_ratio_of_means": of_means("length"),
-        "turning_ratio_of_means": of_means("turning_points"),
-        **{f"mean_{name}": value for name, value in means.items()},
+        "length_ratio": over_all(length_ratio),
+        "turning_ratio": over_all(turning_ratio),
+        "time": over_all(lambda row: _driven(row, "time")),
         "grid_hits": sum(not row["grid_free"] for row in rows),
         "grid_hits_disc": sum(not row["grid_free_disc"] for row in rows),
     }
@@ -137,7 +134,6 @@ def _presets_table(rows: Mapping[str, Sequence[Row]]) -> Table:
     lines: list[tuple[Cell, ...]] = []
     for preset, of in rows.items():
         found = summary(of)
-        lengths, turns = found["length_ratio"] or {}, found["turning_ratio"] or {}
         interval = wilson(found["arrived"], found["missions"])
         assert interval is not None
         lines.append(
@@ -149,9 +145,7 @@ def _presets_table(rows: Mapping[str, Sequence[Row]]) -> Table:
                 found["contacts_moving"],
                 found["contacts_resting"],
                 found["timeouts"] + found["blocked"] + found["errors"],
-                lengths.get("median"),
-                turns.get("median"),
-                found["mean_time"],
+                *(found[what]["median"] for what in ("length_ratio", "turning_ratio", "time")),
             )
         )
     lines.append(("in print", *([None] * 6), *_printed_ratios(), None))
@@ -168,10 +162,11 @@ def _presets_table(rows: Mapping[str, Sequence[Row]]) -> Table:
             ("late, blocked", "d"),
             ("length ratio", ".3f"),
             ("turns ratio", ".3f"),
-            ("mean s", ".1f"),
+            ("median s", ".1f"),
         ),
         lines,
-        "Ratios to the improved A*'s grid path are medians over the worlds in which the preset arrived.",
+        "Ratios to the improved A*'s grid path, and times, are medians over all worlds; one in which the "
+        "robot did not arrive counts as longer than any.",
     )
 
 
@@ -197,20 +192,19 @@ def _own_table(row: Row) -> Table:
 
 
 def _spread_table(rows: Sequence[Row]) -> Table:
-    arrived = [row for row in rows if row["outcome"] == "arrived"]
     found = summary(rows)
     alone, hybrid = PRINTED["improved"], PRINTED["hybrid"]
     ratios = _printed_ratios()
     figures: dict[str, tuple[Callable[[Row], float], float]] = {
         "improved A*, length m": (itemgetter("grid_length"), alone[0]),
-        "hybrid, length m": (itemgetter("length"), hybrid[0]),
+        "hybrid, length m": (lambda row: _driven(row, "length"), hybrid[0]),
         "length, hybrid / improved A*": (length_ratio, ratios[0]),
         "improved A*, turns": (itemgetter("grid_turning_points"), alone[1]),
-        "hybrid, turns": (itemgetter("turning_points"), hybrid[1]),
+        "hybrid, turns": (lambda row: _driven(row, "turning_points"), hybrid[1]),
         "turns, hybrid / improved A*": (turning_ratio, ratios[1]),
     }
     lines: list[tuple[Cell, ...]] = [
-        (name, *_five([figure(row) for row in arrived]), float(printed))
+        (name, *_quantiles([figure(row) for row in rows], FIVE), float(printed))
         for name, (figure, printed) in figures.items()
     ]
     others = ", ".join(f"{found[name]} {name}" for name in ("timeouts", "blocked", "errors"))
@@ -227,7 +221,8 @@ def _spread_table(rows: Sequence[Row]) -> Table:
         lines,
         f"{found['arrived']} of {found['missions']} arrived, {found['contacts_moving']} touched "
         f"something while moving, {found['contacts_resting']} at rest; {others}. Figures are over "
-        f"those that arrived. The improved A*'s path alone would hit something unknown in "
+        f"all worlds; one in which the robot did not arrive counts as longer than any, and a quantile "
+        f"there is blank. The improved A*'s path alone would hit something unknown in "
         f"{found['grid_hits']} worlds as a point, in {found['grid_hits_disc']} as the robot's disc.",
     )
 
@@ -237,11 +232,12 @@ def _printed_ratios() -> tuple[float, float]:
     return hybrid_length / length, hybrid_turns / turns
 
 
-def _five(values: Sequence[float]) -> list[float | None]:
-    """Median, quartiles, 95th percentile and the largest; blank where there is nothing."""
+def _quantiles(values: Sequence[float], at: Sequence[float]) -> list[float | None]:
+    """Values at some fractions of the sorted ones, the nearest below; None where that is infinite."""
     if not values:
-        return [None] * 5
-    return [float(q) for q in np.quantile(values, (0.5, 0.25, 0.75, 0.95, 1.0))]
+        return [None] * len(at)
+    found = np.quantile(values, at, method="inverted_cdf")
+    return [float(value) if np.isfinite(value) else None for value in found]
 
 
 def _row(number: int, seed: int, arm: str, settings: Mapping[str, Any] | None) -> Row:
