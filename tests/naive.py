@@ -238,19 +238,30 @@ def slack_of_constraint(boxes, footprint, margin, start, pose):
     """Slack (m) of the clearance constraint of a footprint at ``pose`` (x, y, cos, sin), cell by cell.
 
     The footprint keeps ``margin`` from each of ``boxes`` (k, 4: low x, high x, low y, high y), or
-    what it had at ``start``.
+    what it had at ``start``; where they overlap, that is how deep a corner of the one is in the other.
     """
     low_x, high_x, low_y, high_y = boxes.T
     shapes = shapely.box(low_x, low_y, high_x, high_y)
     gaps = []
     for x, y, cos, sin in (pose, start):
         if footprint.is_disc:
-            away = shapely.distance(shapely.Point(x, y), shapes) - footprint.circumscribed
+            away = signed_distance(shapes, shapely.Point(x, y)) - footprint.circumscribed
         else:
             placed = footprint.vertices @ np.array([[cos, sin], [-sin, cos]]) + (x, y)
-            away = shapely.distance(shapely.Polygon(placed), shapes)
-        gaps.append(np.maximum(away, 0.0))
+            body = shapely.Polygon(placed)
+            away = shapely.distance(body, shapes)
+            for k in np.flatnonzero(away == 0.0):
+                inside = signed_distance(body, shapely.points(shapes[k].exterior.coords))
+                through = signed_distance(shapes[k], shapely.points(placed))
+                away[k] = min(inside.min(), through.min())
+        gaps.append(away)
     return float((gaps[0] - np.minimum(margin, gaps[1])).min())
+
+
+def signed_distance(shape, point):
+    """Distances (m) between shapes and points, negative inside: how far the edge is."""
+    away = shapely.distance(shape, point)
+    return np.where(away > 0.0, away, -shapely.distance(shapely.boundary(shape), point))
 
 
 def footprint_gaps(centres, footprint, pose):

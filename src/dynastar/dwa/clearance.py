@@ -71,7 +71,7 @@ def least_clearance(field, body, pose, enough=EXACT_WITHIN):
 
 @inner
 def polygon_distance(vertices, px, py):
-    """Distance (m) from a point to a convex polygon in the same frame, 0 inside."""
+    """Distance (m) from a point to a convex polygon in the same frame, negative inside."""
     n = len(vertices)
     best = np.inf
     inside = True
@@ -85,24 +85,25 @@ def polygon_distance(vertices, px, py):
         s = min(1.0, max(0.0, (qx * ex + qy * ey) / (ex * ex + ey * ey)))
         dx, dy = qx - s * ex, qy - s * ey
         best = min(best, dx * dx + dy * dy)
-    return 0.0 if inside else math.sqrt(best)
+    return -math.sqrt(best) if inside else math.sqrt(best)
 
 
 @inner
 def body_distance(body, pose, x, y):
-    """Distance (m) from a point to the footprint at ``pose``, 0 inside."""
+    """Distance (m) from a point to the footprint at ``pose``, negative inside."""
     dx, dy = x - pose.x, y - pose.y
     if len(body.vertices) == 0:
-        return max(0.0, math.hypot(dx, dy) - body.circumscribed)
+        return math.hypot(dx, dy) - body.circumscribed
     ahead, left = pose.cos * dx + pose.sin * dy, pose.cos * dy - pose.sin * dx
     return polygon_distance(body.vertices, ahead, left)
 
 
 @inner
 def box_distance(box, x, y):
-    """Distance (m) from a point to a box, 0 inside."""
-    dx = max(box.low_x - x, 0.0, x - box.high_x)
-    dy = max(box.low_y - y, 0.0, y - box.high_y)
+    """Distance (m) from a point to a box, negative inside."""
+    dx, dy = max(box.low_x - x, x - box.high_x), max(box.low_y - y, y - box.high_y)
+    if dx <= 0.0 or dy <= 0.0:
+        return max(dx, dy)
     return math.sqrt(dx * dx + dy * dy)
 
 
@@ -120,10 +121,13 @@ def closed_box(closed, row, column):
 
 @inner
 def body_box_distance(body, pose, box):
-    """Distance (m) from the footprint at ``pose`` to a box that is smaller than it, 0 where they meet."""
+    """Distance (m) from the footprint at ``pose`` to a box that is smaller than it.
+
+    It is 0 or negative where they overlap, and falls the deeper the one reaches into the other.
+    """
     n = len(body.vertices)
     if n == 0:
-        return max(0.0, box_distance(box, pose.x, pose.y) - body.circumscribed)
+        return box_distance(box, pose.x, pose.y) - body.circumscribed
     least = min(
         body_distance(body, pose, box.low_x, box.low_y),
         body_distance(body, pose, box.low_x, box.high_y),
@@ -187,8 +191,9 @@ def clearance_slack(closed, body, margin, start, pose, enough=0.0):
     """Slack (m) of the clearance constraint at ``pose``, negative if violated.
 
     The constraint: the footprint keeps ``margin`` from the box of every closed cell, or its distance
-    at ``start`` if that was smaller. The slack is exact only up to ``enough`` (m), a cell at least.
-    Cells deep inside count only where the footprint reaches into closed space.
+    at ``start`` if that was smaller; where they overlapped, it reaches no deeper. The slack is exact
+    only up to ``enough`` (m), a cell at least. Cells deep inside count only where the footprint
+    reaches into closed space.
     """
     field, a = closed.distance, closed.distance.resolution
     enough = max(enough, a)

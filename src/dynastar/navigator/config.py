@@ -90,11 +90,15 @@ def fitted(config: NavigatorConfig, robot: Robot) -> NavigatorConfig:
 
 
 def margin_of(robot: Robot, config: NavigatorConfig) -> float:
-    """The margin (m) of a robot's footprint from obstacles: the declared errors."""
+    """The margin (m) of a robot's footprint from obstacles: the declared errors.
+
+    It is at least as far as a corner can stick out between two beams, right beside the robot.
+    """
     lever = math.hypot(robot.lidar.x, robot.lidar.y)
     if not robot.footprint.is_disc:
         lever += robot.footprint.circumscribed
-    return config.range_error + 2.0 * config.pose_error + config.heading_error * lever
+    errors = config.range_error + 2.0 * config.pose_error + config.heading_error * lever
+    return max(errors, 0.5 * robot.lidar.increment * robot.footprint.circumscribed)
 
 
 def configured(
