@@ -3,7 +3,7 @@
 import os
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -49,15 +49,17 @@ def run_suite(
     A mission that raises is a row with the outcome "error" and the reason; it stops nothing. Finished
     rows are kept in ``keep``, and a run that was cut off goes on from there. It is not removed.
     """
+    began = time.perf_counter()
     jobs, skipped = jobs_of(name, suite, options)
-    rows, walls = run_jobs(name, jobs, options, progress, keep)
-    return result_of(name, suite, options, rows, skipped, sum(walls))
+    rows, times = run_jobs(name, jobs, options, progress, keep)
+    seconds = {"wall_s": time.perf_counter() - began, "cpu_s": sum(times)}
+    return result_of(name, suite, options, rows, skipped, seconds)
 
 
 def run_jobs(
     name: str, jobs: Sequence[Job], options: Options, progress: bool, keep: Path | None
 ) -> tuple[list[dict[str, Any]], list[float]]:
-    """The row of each job and the seconds of wall time it took, in the jobs' order."""
+    """The row of each job and the seconds of CPU time it took, in the jobs' order."""
     settings = {
         "run": name,
         **{key: getattr(options, key) for key in ("seed", "preset", "ideal", "attention")},
@@ -69,8 +71,8 @@ def run_jobs(
     with tempfile.TemporaryDirectory() as folder:
         file = keep or Path(folder) / "rows.jsonl"
         rows = collect(name, work, jobs, file, settings, options.workers, progress)
-    walls = [row.pop("wall_s") for row in rows]
-    return rows, walls
+    times = [row.pop("cpu_s") for row in rows]
+    return rows, times
 
 
 def result_of(
@@ -79,16 +81,16 @@ def result_of(
     options: Options,
     rows: Sequence[dict[str, Any]],
     skipped: int,
-    wall: float,
+    seconds: Mapping[str, float],
 ) -> dict[str, Any]:
-    """Result of a suite for JSON; ``wall_s`` is the missions' wall time together."""
+    """Result of a suite for JSON; ``seconds`` are ``wall_s`` of this run and ``cpu_s`` of all missions."""
     published = getattr(suite, "PUBLISHED", ())
     return {
         "suite": name,
         **{key: getattr(options, key) for key in ("preset", "seed", "ideal", "controller")},
         "attention": options.attention or getattr(suite, "ATTENTION", "none"),
         "settings": dict(options.settings),
-        "wall_s": round(wall, 1),
+        **{key: round(value, 1) for key, value in seconds.items()},
         "published": [dict(zip(("label", "figure", "source"), p, strict=True)) for p in published],
         "comparable": getattr(suite, "COMPARABLE", ""),
         **totals(rows, skipped),
@@ -96,9 +98,14 @@ def result_of(
 
 
 def _timed(options: Options, job: Job) -> dict[str, Any]:
-    began = time.perf_counter()
+    began = _cpu_time()
     row = run_job(options, job)
-    return row | {"wall_s": time.perf_counter() - began}
+    return row | {"cpu_s": _cpu_time() - began}
+
+
+def _cpu_time() -> float:
+    """Seconds of CPU time of this process and of its children that have ended."""
+    return sum(os.times()[:4])
 
 
 def run_job(options: Options, job: Job) -> dict[str, Any]:

@@ -39,14 +39,14 @@ def run_all(
     began = time.perf_counter()
     planned, left_out = _planned(options, others)
     jobs = _in_turn([jobs for jobs, _ in planned.values()])
-    rows, walls = run_jobs("all", jobs, options, progress, keep)
+    rows, times = run_jobs("all", jobs, options, progress, keep)
     driven: dict[tuple[str, str], list[tuple[dict[str, Any], float]]] = {key: [] for key in planned}
-    for job, row, wall in zip(jobs, rows, walls, strict=True):
-        driven[job.controller, job.key[0]].append((row, wall))
+    for job, row, cpu in zip(jobs, rows, times, strict=True):
+        driven[job.controller, job.key[0]].append((row, cpu))
     found: dict[str, dict[str, Any]] = {}
     for (controller, name), (_, skipped) in planned.items():
         of = [row for row, _ in driven[controller, name]]
-        seconds = sum(wall for _, wall in driven[controller, name])
+        seconds = {"cpu_s": sum(cpu for _, cpu in driven[controller, name])}
         if controller != options.controller and all(row["outcome"] == "error" for row in of):
             left_out[f"{controller} in {name}"] = of[0]["reason"] if of else "no mission"
             continue

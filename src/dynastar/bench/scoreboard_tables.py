@@ -38,7 +38,7 @@ def table(result: Result) -> Table:
             ("time ratio", ".2f"),
             ("tick ms", ".1f"),
             ("p99 ms", ".1f"),
-            ("wall s", ".0f"),
+            ("CPU s", ".0f"),
         ),
         lines,
         "Succeeded: arrived, or rightly said that there is no way, without contact; with Wilson's interval "
@@ -100,5 +100,5 @@ def _line(name: str, of: Result) -> tuple[Cell, ...]:
         of["stops"] or None,
         of["timeouts"],
         *(of[key] for key in ("score", "time_ratio", "tick_ms_median", "tick_ms_p99")),
-        of.get("wall_s"),
+        of.get("cpu_s"),
     )

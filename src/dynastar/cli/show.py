@@ -10,6 +10,7 @@ from dynastar.terminal import printable
 UNITS = {
     "time": "s",
     "wall_s": "s",
+    "cpu_s": "s",
     "length": "m",
     "grid_length": "m",
     "min_clearance": "m",
