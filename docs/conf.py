@@ -8,6 +8,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 
 import reference_pages
+from docutils import nodes
+from sphinx import addnodes
 
 import dynastar
 
@@ -56,7 +58,18 @@ def shorten_signature(app, what, name, object_, options, signature, annotation):
     return texts[0] or None, texts[1] or None
 
 
+def shorten_properties(app, doctree):
+    """Shows the arrays that properties return as they are written in code."""
+    for node in doctree.findall(addnodes.desc_annotation):
+        text = re.sub(
+            r"ndarray\[tuple\[[^\]]*\], dtype\[([^\]]*)\]\]", r"NDArray[\1]", node.astext()
+        )
+        if text != node.astext():
+            node.children = [nodes.Text(text)]
+
+
 def setup(app):
     """Writes the reference pages from the definitions before anything is read."""
     app.connect("autodoc-process-signature", shorten_signature)
+    app.connect("doctree-read", shorten_properties)
     reference_pages.write(Path(__file__).parent / "reference")
