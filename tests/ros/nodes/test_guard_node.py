@@ -44,7 +44,7 @@ def joystick(client, processes):
 
 
 def test_it_passes_commands_and_stops_before_obstacles(client, joystick):
-    client.spin(1.0)
+    assert client.spin(30.0, lambda: client.odometry is not None), "no odometry"
     start = client.place
     assert joystick.hold(0.4, 0.0, 20.0, lambda: client.commands[-1][1] > 0.39)
     assert joystick.hold(0.4, 0.0, 5.0, lambda: "passing" in client.state)
