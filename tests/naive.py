@@ -234,12 +234,14 @@ def straight_lines(clear, points):
     return length[len(points) - 1]
 
 
-def slack_of_constraint(boxes, footprint, margin, start, pose):
+def slack_of_constraint(space, footprint, margin, start, pose):
     """Slack (m) of the clearance constraint of a footprint at ``pose`` (x, y, cos, sin), cell by cell.
 
-    The footprint keeps ``margin`` from each of ``boxes`` (k, 4: low x, high x, low y, high y), or
-    what it had at ``start``; where they overlap, that is how deep a corner of the one is in the other.
+    ``space`` is as of ``boxes_of``. The footprint keeps ``margin`` from each box, or what it had at
+    ``start``; where they overlap, that is how deep a corner of the one is in the other. A box in which
+    the robot stood at the start does not count.
     """
+    boxes, hit = space
     low_x, high_x, low_y, high_y = boxes.T
     shapes = shapely.box(low_x, low_y, high_x, high_y)
     gaps = []
@@ -255,7 +257,8 @@ def slack_of_constraint(boxes, footprint, margin, start, pose):
                 through = signed_distance(shapes[k], shapely.points(placed))
                 away[k] = min(inside.min(), through.min())
         gaps.append(away)
-    return float((gaps[0] - np.minimum(margin, gaps[1])).min())
+    counts = gaps[1] >= np.where(hit, -margin, 0.0)
+    return float((gaps[0] - np.minimum(margin, gaps[1]))[counts].min(initial=np.inf))
 
 
 def signed_distance(shape, point):

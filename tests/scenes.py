@@ -58,14 +58,15 @@ def closed_space(closed):
 
 
 def boxes_of(closed):
-    """The boxes (k, 4: low x, high x, low y, high y) in metres of what may stand in a ``Closed``."""
+    """What may stand in a ``Closed``: boxes (k, 4: low x, high x, low y, high y; m), and which are hits."""
     cells = np.argwhere(closed.distance.values == 0.0)
     half = CELL / math.sqrt(2.0)
     whole = np.array([-half, half, -half, half])
     hits = closed.hits[tuple(cells.T)]
     hits = np.column_stack([hits[name] for name in hits.dtype.names])
-    boxes = np.where(closed.occupied[tuple(cells.T)][:, None], hits, whole)
-    return boxes + ((cells[:, ::-1] + 0.5) * CELL).repeat(2, axis=1)
+    hit = closed.occupied[tuple(cells.T)]
+    boxes = np.where(hit[:, None], hits, whole)
+    return boxes + ((cells[:, ::-1] + 0.5) * CELL).repeat(2, axis=1), hit
 
 
 def centres_of(closed):

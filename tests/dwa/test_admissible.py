@@ -137,11 +137,12 @@ def test_a_stop_is_certified_if_and_only_if_its_whole_sweep_keeps_clear(name, se
     robot, random = SHAPES[name], np.random.default_rng(seed)
     closed = scattered(random, random.choice([0.0003, 0.001, 0.003]))
     scene = scene_of(closed, margin=MARGIN)
-    boxes = boxes_of(scene.closed)
+    boxes, hit = boxes_of(scene.closed)
     v, omega = random.uniform(-0.4, 1.2), random.uniform(-1.5, 1.5)
     state = state_at(*random.uniform(1.0, 7.0, 2), random.uniform(-4, 4), v, omega)
     start = state.pose
-    near = boxes[np.hypot(*(boxes[:, ::2] - (start.x, start.y)).T) < 4.0]
+    at_hand = np.hypot(*(boxes[:, ::2] - (start.x, start.y)).T) < 4.0
+    near = boxes[at_hand], hit[at_hand]
     command = reachable_command(random, robot.limits, v, omega)
     certified = certify(scene, robot, state, command) == ADMISSIBLE
 

@@ -142,16 +142,20 @@ def test_a_cell_that_was_nearer_at_the_start_may_stay_as_near_but_not_come_neare
     assert clearance_slack(space, body(name), MARGIN, far, start) == pytest.approx(-0.03, abs=0.01)
 
 
-@pytest.mark.parametrize("margin", [0.0, MARGIN])
 @pytest.mark.parametrize("name", sorted(FOOTPRINTS))
-def test_nothing_is_driven_into_by_any_margin_and_nothing_deeper_than_at_the_start(name, margin):
+def test_nothing_is_driven_into_and_a_hit_at_the_edge_no_deeper(name):
     front = 0.3 if name == "disc" else FOOTPRINTS[name].vertices[:, 0].max()
     space = closed_space(boxed((4.0, 3.9, 4.05, 4.1)))
     away, inside = at(4.025 - front - 0.2, 4.0), at(4.025 - front + 0.05, 4.0)
-    assert clearance_slack(space, body(name), margin, away, inside) < -0.02
-    deeper = at(inside.x + 0.02, 4.0)
-    assert clearance_slack(space, body(name), margin, inside, deeper) < -1e-3
-    assert clearance_slack(space, body(name), margin, inside, at(inside.x - 0.02, 4.0)) >= 0.0
+    back, deeper = at(inside.x - 0.02, 4.0), at(inside.x + 0.02, 4.0)
+    for margin in (0.0, MARGIN):
+        assert clearance_slack(space, body(name), margin, away, inside) < -0.02
+        assert clearance_slack(space, body(name), margin, inside, back) >= 0.0
+    assert clearance_slack(space, body(name), MARGIN, inside, deeper) < -1e-3
+    # By more than the declared errors, or without a hit, it is nothing that the robot stands in.
+    assert clearance_slack(space, body(name), 0.0, inside, deeper) >= 0.0
+    unseen = space._replace(occupied=np.zeros_like(space.occupied))
+    assert clearance_slack(unseen, body(name), MARGIN, inside, deeper) >= 0.0
 
 
 @pytest.mark.parametrize("name", sorted(FOOTPRINTS))
@@ -159,7 +163,7 @@ def test_a_closed_cell_inside_the_footprint_does_not_void_the_check_of_others(na
     closed = boxed((4.0, 4.0, 4.05, 4.05), (4.8, 3.0, 4.9, 5.0))
     start = at(4.0, 4.0)
     space = closed_space(closed)
-    assert clearance_slack(space, body(name), MARGIN, start, start) == 0.0
+    assert clearance_slack(space, body(name), MARGIN, start, start) >= 0.0
     assert clearance_slack(space, body(name), MARGIN, start, at(4.05, 4.0)) >= -1e-9
     assert clearance_slack(space, body(name), MARGIN, start, at(4.6, 4.0)) < -1e-3
 

@@ -179,8 +179,10 @@ def slack_to(closed, all_of_it, body, margin, start, pose, enough):
             if near - margin >= least:
                 continue
             inside |= near <= 0.0
-            allowed = min(margin, body_box_distance(body, start, box))
-            least = min(least, near - allowed)
+            before = body_box_distance(body, start, box)
+            if before < (-margin if closed.occupied[row, at] else 0.0):
+                continue  # the robot stands there
+            least = min(least, near - min(margin, before))
             if least < -ROUNDING:
                 return least, inside
     return least, inside
@@ -191,9 +193,10 @@ def clearance_slack(closed, body, margin, start, pose, enough=0.0):
     """Slack (m) of the clearance constraint at ``pose``, negative if violated.
 
     The constraint: the footprint keeps ``margin`` from the box of every closed cell, or its distance
-    at ``start`` if that was smaller; where they overlapped, it reaches no deeper. The slack is exact
-    only up to ``enough`` (m), a cell at least. Cells deep inside count only where the footprint
-    reaches into closed space.
+    at ``start`` if that was smaller; where they overlapped, it reaches no deeper. A cell does not count
+    in which the robot stood at ``start``: overlapped by more than the margin, or without a hit. The
+    slack is exact only up to ``enough`` (m), a cell at least. Cells deep inside count only where the
+    footprint reaches into closed space.
     """
     field, a = closed.distance, closed.distance.resolution
     enough = max(enough, a)
