@@ -109,27 +109,25 @@ class WindowChart {
   draw(frame) {
     this.frame = frame;
     const [context, width, height] = sized(this.canvas), palette = colours();
-    const all = frame.candidates, edge = 14;
     this.dots = [];
-    if (all.length) this.drawDots(context, width, height, edge, palette);
+    if (frame.candidates.length) this.drawDots(context, width, height, palette);
     this.describe(context, palette);
   }
 
-  drawDots(context, width, height, edge, palette) {
-    const { frame } = this, all = frame.candidates;
+  drawDots(context, width, height, palette) {
+    const { frame } = this, all = frame.candidates, edge = 14, head = 32;  // the line above the dots
     const most = Math.max(0.1, ...all.map((one) => Math.abs(one.omega)));
     const top = Math.max(0.1, ...all.map((one) => one.v)), low = Math.min(0, ...all.map((one) => one.v));
     const x = (omega) => width / 2 - (width / 2 - edge) * omega / most;
-    const y = (v) => height - edge - (height - 2 * edge) * (v - low) / (top - low);
+    const y = (v) => height - edge - (height - edge - head) * (v - low) / (top - low);
     context.strokeStyle = palette.edge;
     context.beginPath();
-    context.moveTo(x(0), 0); context.lineTo(x(0), height);
+    context.moveTo(x(0), head - edge); context.lineTo(x(0), height);
     context.moveTo(0, y(0)); context.lineTo(width, y(0));
     context.stroke();
     context.fillStyle = palette.faint;
     context.font = "11px system-ui, sans-serif";
-    context.fillText(`v ${top.toFixed(2)} m/s`, x(0) + 4, 11);
-    context.fillText(`omega ${most.toFixed(2)} rad/s`, 3, y(0) - 4);
+    context.fillText(`up: v to ${top.toFixed(2)} m/s; left: omega to ${most.toFixed(2)} rad/s`, 4, 12);
     const rank = ranked(all);
     for (const one of all) {
       const good = one.refused === 0 && Number.isFinite(one.score), px = x(one.omega), py = y(one.v);
