@@ -137,7 +137,7 @@ def background(episode: Episode) -> Canvas:
 
 def _draw_key(canvas: Canvas, episode: Episode) -> None:
     """The legend, in the lower strip, as far as it fits."""
-    entries = [("robot and its way", palette.DRIVEN), ("plan", palette.FIRST_PATH)]
+    entries = [("robot and path driven", palette.DRIVEN), ("planned path", palette.FIRST_PATH)]
     if len(episode.mover_radii):
         entries.append(("mover", palette.MOVER))
     if episode.obstacles:
