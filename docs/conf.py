@@ -28,6 +28,7 @@ autodoc_typehints = "signature"
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True
 autodoc_class_signature = "mixed"
+python_maximum_signature_line_length = 100
 
 html_theme = "furo"
 html_title = f"dynastar {release}"

@@ -17,6 +17,7 @@ from dynastar.config import Field
 from dynastar.io.scenario_schema import scenario_schema
 
 LARGEST_SHOWN = 1e15  # of a range; beyond it any number will do
+LONGEST_NUMBER = 10  # characters of a default
 
 MODULES = {
     "dynastar.masks": ("SpeedScale", "with_keepout", "with_speed_limits"),
@@ -35,7 +36,7 @@ MODULES = {
     "dynastar.viewer.panels": ("Searched", "draw_searches", "draw_unaware", "draw_driven"),
     "dynastar.viewer.commands": ("draw_commands",),
     "dynastar.viewer.intervals": ("Measure", "draw_intervals"),
-    "dynastar.viewer.spread": ("Spread", "Column", "draw_spreads", "draw_columns"),
+    "dynastar.viewer.spread": ("Spread", "Column", "draw_spreads", "draw_columns", "draw_parts"),
     "dynastar.page": ("write_report", "framed"),
     "dynastar.smoothness": (
         "smoothness",
@@ -122,7 +123,7 @@ def _documented(module: str, name: str) -> list[str]:
         return _documented_tuple(f"{module}.{name}", thing)
     if inspect.isclass(thing):
         return [f".. autoclass:: {module}.{name}", "   :members:", ""]
-    if inspect.isfunction(thing):
+    if inspect.isfunction(inspect.unwrap(thing)):
         return [f".. autofunction:: {module}.{name}", ""]
     kinds = (
         ", ".join(f"``{value!s:.40}``" for value in thing)
@@ -159,14 +160,16 @@ def _field_row(name: str, hint: Any, defaults: dict[str, Any]) -> tuple[str, ...
     low, high = field.low, field.high
     legal = f"{low:g} to {high:g}" if math.isfinite(low) and high <= LARGEST_SHOWN else ""
     default = f"``{_shown(defaults[name])}``" if name in defaults else ""
-    return f"``{name}``", _type(hint), field.unit, legal, default, field.doc
+    nested = hint.__doc__.partition("\n")[0] if hasattr(hint, "_field_defaults") else ""
+    return f"``{name}``", _type(hint), field.unit, legal, default, field.doc or nested
 
 
 def _shown(value: Any) -> str:
     """A default as it is written in Python; of settings the class alone."""
     if hasattr(value, "_field_defaults"):
         return f"{type(value).__name__}(...)" if value else f"{type(value).__name__}()"
-    return repr(value)
+    long = isinstance(value, float) and len(repr(value)) > LONGEST_NUMBER
+    return f"{value:.6g}" if long else repr(value)
 
 
 def _type(hint: Any) -> str:
@@ -257,4 +260,6 @@ def _default(value: Any) -> str:
     """A default as it is written in a scenario file."""
     if value is None:
         return ""
-    return f"`{str(value).lower() if isinstance(value, bool) else value}`"
+    if isinstance(value, bool):
+        return f"`{str(value).lower()}`"
+    return f"`{_shown(value) if isinstance(value, float) else value}`"

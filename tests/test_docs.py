@@ -1,6 +1,7 @@
 """The pages say what is so: names exist, pictures are there, tables have their places."""
 
 import html
+import math
 import re
 import shlex
 import subprocess
@@ -192,3 +193,6 @@ def test_the_python_page_has_a_table_for_settings_and_all_planners():
     text = reference_pages.python()
     for words in ("deceleration", "m/s2", "``v_brake``", *ALGORITHMS, "animate_episode"):
         assert words in text, words
+    assert "Settings of one dynamic window." in text
+    assert repr(2 * math.pi) not in text + reference_pages.scenario()
+    assert ".. autofunction:: dynastar.warm_up" in text

@@ -17,11 +17,13 @@ OPEN, BY_THE_WALL = (1.0, 1.0, 0.0), (1.0, 0.36, 0.0)  # starts; the second is i
 
 @cache
 def warm_up() -> None:
-    """Drive past a box and a walker for a few seconds, as a disc and as a polygon, once a process.
+    """Compile or load all kernels of a drive, once per process, so that no command waits for it.
 
-    First they turn where they stand, for which the polygon has no room. Then they drive along a path, and
-    last to a goal: by then another process may have compiled the planner.
+    The first call of a version compiles, which takes about 25 s on two cores; later ones load what was
+    compiled. To that end two simulated robots, a disc and a polygon, drive past a box and a walker.
     """
+    # First they turn where they stand, for which the polygon has no room. Then they drive along a path,
+    # and last to a goal: by then another process may have compiled the planner.
     occupied = np.pad(np.zeros((58, 98), np.int8), 1, constant_values=100)
     box = np.array([[3.0, 0.6], [3.5, 0.6], [3.5, 1.4], [3.0, 1.4]])
     walker = Mover(0.3, np.array([0.0, 4.0]), np.array([[5.0, 2.2], [1.0, 1.5]]))
