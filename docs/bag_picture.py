@@ -107,8 +107,9 @@ def draw_speeds(axes: Axes, speeds: np.ndarray) -> None:
     ):
         axes.plot(speeds[:, 0], speeds[:, column], color=colour, linewidth=1, label=name)
     axes.axvline(AT, color="#e3001b", linewidth=1)
-    axes.legend(loc="lower right", fontsize=8)
-    axes.set(xlim=(0, SECONDS), xlabel="time, s", title="/cmd_vel")
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False, fontsize=8)
+    axes.set(xlim=(0, SECONDS), xlabel="time, s")
+    axes.set_title("/cmd_vel", loc="left")
 
 
 if __name__ == "__main__":
