@@ -1,4 +1,4 @@
-"""Ctrl-C while a command starts: one line and status 130, whatever is being imported."""
+"""Ctrl-C while a command starts or a kernel returns: one line and status 130."""
 
 import os
 import subprocess
@@ -6,8 +6,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from numba.core import serialize
 
 import dynastar
+from dynastar import interrupt
 
 # A module that is interrupted while it is imported, and makes another error of it.
 INTERRUPTED = """
@@ -39,9 +41,34 @@ def test_an_interrupt_during_an_import_is_one_line(tmp_path: Path, module: str):
     assert done.returncode == 130
 
 
+RETURNING = """
+import os, signal, time
+from dynastar.interrupt import interrupt_cleanly
+signal.signal(signal.SIGINT, signal.default_int_handler)
+interrupt_cleanly()
+def _numba_unpickle():
+    os.kill(os.getpid(), signal.SIGINT)
+    return sum(range(1000))
+try:
+    print(_numba_unpickle())
+    time.sleep(60)
+except KeyboardInterrupt:
+    print("told")
+"""
+
+
+def test_while_a_kernel_returns_it_comes_a_moment_later():
+    done = subprocess.run([sys.executable, "-c", RETURNING], capture_output=True, text=True)
+    assert done.stdout == "499500\ntold\n", done.stderr
+
+
+def test_numba_still_calls_what_is_waited_for():
+    assert serialize._numba_unpickle.__name__ == interrupt._BOXING
+
+
 def test_at_other_times_it_is_a_keyboard_interrupt(tmp_path: Path):
-    code = "import os, signal; from dynastar.interrupt import end_imports_cleanly\n"
-    code += "signal.signal(signal.SIGINT, signal.default_int_handler); end_imports_cleanly()\n"
+    code = "import os, signal; from dynastar.interrupt import interrupt_cleanly\n"
+    code += "signal.signal(signal.SIGINT, signal.default_int_handler); interrupt_cleanly()\n"
     code += "try: os.kill(os.getpid(), signal.SIGINT)\nexcept KeyboardInterrupt: print('told')\n"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "told\n"

@@ -2,12 +2,12 @@
 
 import sys
 
-from dynastar.interrupt import end_imports_cleanly
+from dynastar.interrupt import interrupt_cleanly
 
 
 def start() -> int:
     """Runs a command and returns its exit status."""
-    end_imports_cleanly()
+    interrupt_cleanly()
     from dynastar.cli import main
 
     return main()

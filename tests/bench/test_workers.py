@@ -1,6 +1,8 @@
+import functools
 import math
 import multiprocessing
 import os
+import signal
 import subprocess
 import sys
 
@@ -30,6 +32,13 @@ def test_processes_have_one_thread_and_the_environment_stays(monkeypatch):
     assert set(spread(os.getenv, ["OMP_NUM_THREADS", "NUMBA_NUM_THREADS"], 2)) == {"1"}
     assert os.environ["OMP_NUM_THREADS"] == "7"
     assert "NUMBA_NUM_THREADS" not in os.environ
+
+
+def test_processes_never_get_the_interrupt_that_ends_the_parent():
+    mask = functools.partial(signal.pthread_sigmask, signal.SIG_BLOCK)
+    before = mask(())
+    assert all(signal.SIGINT in held for held in spread(mask, [(), ()], 2))
+    assert mask(()) == before
 
 
 def test_a_worker_that_is_killed_is_an_error_in_words():

@@ -94,10 +94,20 @@ def pool(workers: int) -> Iterator[Executor]:
 def _submitted(
     executor: Executor, work: Callable[[Any], Row], jobs: Sequence[Any]
 ) -> Iterator[tuple[int, Row]]:
-    with _single_threaded():  # processes start when jobs are submitted
+    with _no_interrupt(), _single_threaded():  # processes start when jobs are submitted
         futures = {executor.submit(work, job): index for index, job in enumerate(jobs)}
     for future in as_completed(futures):
         yield futures[future], future.result()
+
+
+@contextmanager
+def _no_interrupt() -> Iterator[None]:
+    """Holds Ctrl-C back; processes that start in the meantime never get it, also before ``settle``."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextmanager
