@@ -3,6 +3,7 @@
 import os
 import tempfile
 import time
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -31,8 +32,8 @@ class Job(NamedTuple):
         return (name, self.mission.number, self.repeat, self.controller)
 
 
-def jobs_of(name: str, suite: Suite, options: Options) -> tuple[list[Job], int]:
-    """The jobs of a suite, in the missions' order, and how many missions were left out."""
+def jobs_of(name: str, suite: Suite, options: Options) -> tuple[list[Job], Counter[str]]:
+    """The jobs of a suite, in the missions' order, and how many missions were left out, by reason."""
     chosen, skipped = choose_missions(suite, options)
     known = name if name in SUITES else suite
     repeats = range(options.repeat)
@@ -80,7 +81,7 @@ def result_of(
     suite: Suite,
     options: Options,
     rows: Sequence[dict[str, Any]],
-    skipped: int,
+    skipped: Counter[str],
     seconds: Mapping[str, float],
 ) -> dict[str, Any]:
     """Result of a suite for JSON; ``seconds`` are ``wall_s`` of this run and ``cpu_s`` of all missions."""
@@ -93,7 +94,8 @@ def result_of(
         **{key: round(value, 1) for key, value in seconds.items()},
         "published": [dict(zip(("label", "figure", "source"), p, strict=True)) for p in published],
         "comparable": getattr(suite, "COMPARABLE", ""),
-        **totals(rows, skipped),
+        "skip_reasons": dict(skipped.most_common()),
+        **totals(rows, skipped.total()),
     }
 
 

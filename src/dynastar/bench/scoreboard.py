@@ -1,6 +1,7 @@
 """All suites at once, by several controllers: one pool of processes, one JSON, one picture."""
 
 import time
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from itertools import zip_longest
 from pathlib import Path
@@ -21,7 +22,9 @@ COMPETITORS = ("pure_pursuit", "kompass_dwa", "printed")  # that drive beside th
 QUICK_COMPETITORS = COMPETITORS[:2]  # printed takes longer than all others together
 
 Result = Mapping[str, Any]
-Planned = dict[tuple[str, str], tuple[list[Job], int]]  # by controller and suite: jobs, left out
+Planned = dict[
+    tuple[str, str], tuple[list[Job], Counter[str]]
+]  # by controller and suite: jobs, left out
 
 
 def run_all(

@@ -2,9 +2,10 @@
 
 Missions carry the suite's own numbers, rising; ``--select`` is a slice over those numbers,
 ``--missions`` counts the missions run after leaving out, and every number that was passed on the way
-and not run is counted as skipped.
+and not run is counted as skipped, by the reason.
 """
 
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator
 from itertools import islice
 from typing import NamedTuple
@@ -14,6 +15,7 @@ from dynastar.config import shown
 from dynastar.errors import InputError
 
 REPORT_SEEDS = 10_000  # the first seed that is for published tables only
+ABSENT = "the suite has no mission of this number"
 
 
 class Slice(NamedTuple):
@@ -74,8 +76,8 @@ def refuse_report_seed(seed: int) -> None:
         )
 
 
-def choose_missions(suite: Suite, options: Options) -> tuple[list[Mission], int]:
-    """The missions to run, in order, and how many numbers were passed over or left out."""
+def choose_missions(suite: Suite, options: Options) -> tuple[list[Mission], Counter[str]]:
+    """The missions to run, in order, and how many were passed over or left out, by reason."""
     if options.quick:
         return _quick_missions(suite, options)
     select = parse_select(options.select) if options.select is not None else None
@@ -83,11 +85,12 @@ def choose_missions(suite: Suite, options: Options) -> tuple[list[Mission], int]
     if limit is None and (select is None or select.stop is None):
         limit = suite.DEFAULT_MISSIONS
     chosen: list[Mission] = []
-    present = skipped = past = 0
+    skipped: Counter[str] = Counter()
+    present = past = 0
     for mission in _selected(suite.missions(options), select):
         present, past = present + 1, mission.number + 1
-        if suite.leave_out(mission, options):
-            skipped += 1
+        if reason := suite.leave_out(mission, options):
+            skipped[reason] += 1
             continue
         chosen.append(mission)
         if len(chosen) == limit:
@@ -95,7 +98,7 @@ def choose_missions(suite: Suite, options: Options) -> tuple[list[Mission], int]
     else:
         past = max(past, select.stop or 0) if select is not None else past
     asked = len(select.until(past)) if select is not None else present
-    return chosen, skipped + asked - present
+    return chosen, skipped + Counter({ABSENT: asked - present})
 
 
 def _selected(missions: Iterable[Mission], select: Slice | Listed | None) -> Iterator[Mission]:
@@ -108,11 +111,11 @@ def _selected(missions: Iterable[Mission], select: Slice | Listed | None) -> Ite
             yield mission
 
 
-def _quick_missions(suite: Suite, options: Options) -> tuple[list[Mission], int]:
+def _quick_missions(suite: Suite, options: Options) -> tuple[list[Mission], Counter[str]]:
     """``QUICK_MISSIONS`` missions, spread evenly; one that is left out gives way to the next.
 
     Of a suite that runs the first so many of endless missions, these are the first, too: their numbers
-    say nothing about them. ``skipped`` counts only what the suite's rule leaves out.
+    say nothing about them. Only what the suite's rule leaves out is counted as skipped.
     """
     if options.missions is not None or options.select is not None:
         raise InputError("--quick chooses the missions itself: leave out --missions and --select")
@@ -121,11 +124,16 @@ def _quick_missions(suite: Suite, options: Options) -> tuple[list[Mission], int]
         return choose_missions(suite, options._replace(quick=False, missions=few))
     everything = list(suite.missions(options))
     chosen: list[Mission] = []
-    skipped = following = 0
+    skipped: Counter[str] = Counter()
+    following = 0
     for turn in range(few):
         following = max(following, turn * len(everything) // few)
-        while following < len(everything) and suite.leave_out(everything[following], options):
-            skipped, following = skipped + 1, following + 1
+        while following < len(everything):
+            reason = suite.leave_out(everything[following], options)
+            if not reason:
+                break
+            skipped[reason] += 1
+            following += 1
         chosen += islice(everything, following, following + 1)
         following += 1
     return chosen, skipped

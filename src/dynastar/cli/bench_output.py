@@ -7,9 +7,11 @@ from typing import Any
 from dynastar.bench.statistics import succeeded
 from dynastar.bench.tables import Cell, Table, as_text
 from dynastar.cli.show import as_json, as_table
+from dynastar.terminal import printable
 
 SHOWN_FAILURES = 20
-NOT_SHOWN = ("rows", "groups", "published", "comparable", "settings", "limited")
+SHOWN_REASONS = 5
+NOT_SHOWN = ("rows", "groups", "published", "comparable", "settings", "limited", "skip_reasons")
 OF_GROUPS = {
     "missions": "d",
     "succeeded": "d",
@@ -30,6 +32,11 @@ def print_result(result: Mapping[str, Any]) -> None:
     if result["settings"]:
         shown["settings"] = as_json(result["settings"])
     print(as_table(shown))
+    print("An interval has the true fraction of missions in it with 95 % confidence (Wilson).")
+    for reason, count in list(result["skip_reasons"].items())[:SHOWN_REASONS]:
+        print(f"skipped, not counted as missions: {count}: {printable(reason)}")
+    if len(result["skip_reasons"]) > SHOWN_REASONS:
+        print(f"and {len(result['skip_reasons']) - SHOWN_REASONS} more reasons")
     if result["limited"]:
         seconds = (f"{cause} {spent:.0f} s" for cause, spent in result["limited"].items())
         print(f"limited by: {', '.join(seconds)}")
