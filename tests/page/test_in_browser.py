@@ -80,6 +80,12 @@ def test_a_candidate_says_why(page, report):
         assert "score" in words or "refused:" in words, words
 
 
+def test_an_episode_without_candidates_says_how_they_are_recorded(page, report):
+    opened(page, report[0] / "two.html")
+    said = [hint.inner_text() for hint in page.locator(".hint").all()]
+    assert ["trace=True" in words for words in said] == [False, True], said
+
+
 def test_it_is_said_while_it_plays(page, report):
     opened(page, report[0] / "one.html")
     page.evaluate("dynastar.seek(2)")

@@ -140,6 +140,8 @@ def run(
 ) -> Episode:
     """Drives a scenario, or the one in a file, in simulation: see ``simulation.run``.
 
+    With ``trace`` the episode keeps what the navigator considered in each tick, and a notebook shows it.
+
     Raises StartOccupied, too, for a robot that overlaps a wall or an obstacle at its start.
     """
     if not isinstance(scenario, Scenario):

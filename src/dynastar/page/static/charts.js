@@ -91,8 +91,8 @@ class Chart {
 
 // Candidates as dots, omega to the left as the robot turns, v upwards; says what is under the pointer.
 class WindowChart {
-  constructor(canvas, hint, refusals) {
-    Object.assign(this, { canvas, hint, refusals, frame: null, dots: [], at: null });
+  constructor(canvas, hint, refusals, recorded) {
+    Object.assign(this, { canvas, hint, refusals, recorded, frame: null, dots: [], at: null });
     const point = (event) => this.point([event.offsetX, event.offsetY]);
     canvas.addEventListener("pointerdown", point);
     canvas.addEventListener("pointermove", point);
@@ -101,6 +101,7 @@ class WindowChart {
   }
 
   summary() {
+    if (!this.recorded) return "Candidates were not recorded: run(scenario, trace=True) and dynastar run record them.";
     if (!this.frame || !this.frame.candidates.length) return "No candidates in this tick.";
     const refused = this.frame.candidates.filter((one) => one.refused !== 0).length;
     return `${this.frame.candidates.length} candidates, ${refused} refused. Point at one.`;

@@ -10,6 +10,7 @@ class Live {
     this.name = message.name;
     this.about = message.robot;
     this.refusals = message.refusals;
+    this.recorded = true;
     this.termNames = message.termNames;
     const grid = { ...message.grid, values: unpacked(message.grid.values) };
     if (grid.keepout) grid.keepout = unpacked(grid.keepout);

@@ -25,8 +25,8 @@ function drawRuns(cells, runs, colour) {
 }
 
 // All that is shown of one robot. A source has a name and what is said beside it, the scene, a frame for each
-// time, refusals in words, lines of numbers over its times with the span that is shown, and entries of a log. Where
-// seek is given, charts and log lead to their times.
+// time, refusals in words, recorded (true if it has candidates), lines of numbers over its times with the span
+// that is shown, and entries of a log. Where seek is given, charts and log lead to their times.
 class Panel {
   constructor(source, { seek = null, tool = null } = {}) {
     this.source = source;
@@ -45,7 +45,7 @@ class Panel {
       charts, this.log);
     document.getElementById("views").append(this.root);
     this.view = new View(this.map, boxOf(source.scene.grid), () => this.draw(this.now || 0), tool);
-    this.candidates = new WindowChart(this.window, hint, source.refusals);
+    this.candidates = new WindowChart(this.window, hint, source.refusals, source.recorded);
     this.charts = source.plots().map((plot) => this.makeChart(charts, plot));
     this.times = [];
     this.items = [];

@@ -35,7 +35,8 @@ class Replay {
       goals: data.goals, tolerance: data.tolerance, obstacles: data.obstacles };
     this.trail = new Float32Array(2 * this.times.length);
     for (let i = 0; i < this.times.length; i++) this.trail.set([this.poses[3 * i], this.poses[3 * i + 1]], 2 * i);
-    if (data.trace) this.readTrace(data.trace);
+    this.recorded = Boolean(data.trace);
+    if (this.recorded) this.readTrace(data.trace);
     this.entries = data.events.map(([time, kind, detail]) => [time, `${kind}: ${detail}`])
       .concat(this.plans.map((plan) => [plan.time, `path: ${plan.reason}`])).sort((a, b) => a[0] - b[0]);
     this.exploredOf = -1;
