@@ -92,15 +92,12 @@ def command_of(candidate):
 def is_considered(i, candidate, tail, long, scene, limits):
     """Whether a candidate is rolled out with a tail, and held for the ``long`` time.
 
-    Tails that do not follow the cost-to-go matter near moving obstacles, and a long hold only at
-    speed and nearly straight on.
+    A long hold is considered only at speed and nearly straight on.
     """
     if i == LAST:
         return tail == scene.last.tail and not long
     if i == FOLLOW_NOW:
         return tail == FOLLOW and not long
-    if tail != FOLLOW and len(scene.moving.obstacles) == 0:
-        return False
     if tail == BACK and (long or limits.v_min >= 0.0):
         return False
     return not long or (abs(candidate.v) >= SLOW * limits.v_max and abs(candidate.omega) <= SHARP)
@@ -110,16 +107,21 @@ def is_considered(i, candidate, tail, long, scene, limits):
 def score(scene, rules, start, i, candidate, rows):
     """Write the terms, the tail and the score of the candidate's best manoeuvre.
 
-    Every change from the manoeuvre chosen last has to be worth ``hysteresis``.
+    Every change from the manoeuvre chosen last has to be worth ``hysteresis``. Where following the
+    cost-to-go after the sample risks nothing, no other tail is rolled out.
     """
     clear_for = 0.0
     if candidate.refused == MOVING:
         clear_for = scene.latency + rules.period
         clear_for += stopping_time(candidate.command_v, candidate.command_omega, rules.limits)
     change = 0.0 if i == LAST else rules.hysteresis
-    short_hold = candidate.hold
+    short_hold, risked = candidate.hold, True
     for kind in range(2 * len(TAILS)):
         tail, long = kind % len(TAILS), kind >= len(TAILS)
+        if tail == FOLLOW:
+            risked = True
+        elif not risked:
+            continue
         if not is_considered(i, candidate, tail, long, scene, rules.limits):
             continue
         hold = rules.long_hold if long else short_hold
@@ -131,6 +133,8 @@ def score(scene, rules, start, i, candidate, rows):
         candidate.refused = ADMISSIBLE
         terms = evaluate(scene, rules, start, manoeuvre, rows)
         total = objective(scene, rules, terms) - change
+        if tail == FOLLOW:
+            risked = terms.risk > 0.0
         if total > candidate.score:
             candidate.score, candidate.tail, candidate.hold = total, tail, hold
             candidate.heading, candidate.dist, candidate.vel = terms.heading, terms.dist, terms.vel
