@@ -33,7 +33,7 @@ def test_a_run_goes_on_where_it_was_cut_off(tmp_path: Path) -> None:
     # More missions go on, too; another seed or setting begins anew.
     run_suite("made up", made, Options(repeat=3), keep=keep)
     assert len(flown) == 15
-    changed = {"settings": {"period": 0.2}}, {"ideal": True}, {"attention": "late"}
+    changed = {"settings": {"period": 0.2}}, {"ideal": True}, {"attention": "late"}, {"legs": True}
     for other in (Options(seed=1), *(Options(**one) for one in changed)):
         before = len(flown)
         run_suite("made up", made, other, keep=keep)

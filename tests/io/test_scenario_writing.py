@@ -41,7 +41,16 @@ def same(first, second):
         assert getattr(first, key) == getattr(second, key), key
     for key in ("drive", "odometry", "lidar", "loop"):
         assert repr(getattr(first, key)) == repr(getattr(second, key)), key  # NaN is NaN
-    for key in ("time_limit", "unknown", "preset", "navigator", "start", "goals", "attention"):
+    for key in (
+        "time_limit",
+        "unknown",
+        "preset",
+        "navigator",
+        "start",
+        "goals",
+        "attention",
+        "legs",
+    ):
         assert getattr(first, key) == getattr(second, key), key
     assert first.robot.limits == second.robot.limits
     assert first.robot.lidar == second.robot.lidar
@@ -80,6 +89,7 @@ def test_what_python_alone_can_make_comes_back(tmp_path):
         obstacles=(np.array([[1.0, 6.0], [1.2, 6.0], [1.1, 6.3]]),),
         movers=(Mover(0.2, np.array([0.0, 2.0]), np.array([[0.0, 3.0], [0.0, 4.0]]), "loop"),),
         attention="late",
+        legs=True,
         noise=Noise(0.01, 0.02, 0.03),
         navigator={"dwa": {"weights": {"vel": 0.4}}, "reverse": False},
     )

@@ -11,6 +11,7 @@ from dynastar.perception.placed_scan import placed
 from dynastar.perception.planning_map import PlanningMap
 from dynastar.perception.tracking import Tracker
 from dynastar.robot import ROBOTS, Lidar
+from dynastar.simulation.legs import Legs
 from dynastar.simulation.lidar import LidarSimulator
 
 ROUND = Lidar(720, math.tau, 0.05, 8.0)
@@ -54,6 +55,12 @@ class Watcher:
 
     def of(self, *states):
         return [t for t in self.tracker.tracks if t.state in states]
+
+
+def legs_of(*walks):
+    """The discs over time of people who walk from (x, y) on at (vx, vy) and are seen by their legs."""
+    legs, walks = Legs(len(walks)), np.array(walks, float)
+    return lambda t: legs.discs(walks[:, :2] + t * walks[:, 2:])
 
 
 # -- in view ---------------------------------------------------------------------------------------
@@ -153,6 +160,33 @@ def test_two_obstacles_that_arrive_side_by_side_are_covered():
     for y in (-0.3, 0.3):
         assert any(math.hypot(m.x - 2.5, m.y - y) < 0.45 for m in watcher.confirmed)
     assert all(m.vx == pytest.approx(-0.5, abs=0.15) for m in watcher.confirmed)
+
+
+@pytest.mark.parametrize(
+    "walk", [(2.0, -3.0, 0.0, 1.2), (-4.0, 1.5, 1.0, 0.0), (6.0, 1.0, -1.4, 0.0)]
+)
+def test_a_person_whose_legs_are_seen_is_one_obstacle_with_the_velocity_of_the_person(walk):
+    watcher = Watcher()
+    watcher.watch(legs_of(walk), 3.0)
+    (track,) = watcher.confirmed
+    place, velocity = np.array(walk[:2]) + 3.0 * np.array(walk[2:]), walk[2:]
+    assert (track.x, track.y) == pytest.approx(tuple(place), abs=0.2)
+    assert (track.vx, track.vy) == pytest.approx(velocity, abs=0.35)
+    assert track.radius == pytest.approx(0.3)
+
+
+def test_two_people_who_pass_each_other_are_two_obstacles_by_their_legs_too():
+    watcher = Watcher()
+    watcher.watch(legs_of((2.0, -3.0, 0.0, 1.2), (3.4, 3.0, 0.0, -1.0)), 4.0)
+    one, other = sorted(watcher.confirmed, key=lambda track: track.vy)
+    assert (one.vy, other.vy) == pytest.approx((-1.0, 1.2), abs=0.35)
+
+
+def test_posts_as_narrow_as_legs_are_no_obstacles_that_move():
+    posts = [(2.0, 0.2 * k - 1.0, 0.05) for k in range(10)]
+    watcher = Watcher()
+    watcher.watch(lambda t: posts, 4.0, lambda t: Pose2D(0.2 * t, 0.3 * t, 0.1 * t))
+    assert watcher.ever == set()
 
 
 def test_a_moving_obstacle_leaves_no_hits_behind():

@@ -26,7 +26,7 @@ Result = Mapping[str, Any]
 
 SIGNIFICANT = 0.05
 FEWEST = 6  # pairs that say anything about time: 2 / 2^6 < 0.05
-CONDITIONS = ("preset", "controller", "settings", "ideal", "attention")
+CONDITIONS = ("preset", "controller", "settings", "ideal", "attention", "legs")
 COUNTS = (
     "missions",
     "succeeded",
@@ -37,7 +37,10 @@ COUNTS = (
     "score",
     "time_ratio",
 )
-EARLIER: Mapping[str, Any] = {"attention": "none"}  # of results that do not name a condition
+EARLIER: Mapping[str, Any] = {
+    "attention": "none",
+    "legs": False,
+}  # of results that do not name a condition
 SHOWN = 10  # numbers in a message
 
 

@@ -65,13 +65,14 @@ def run_mission(
 
 
 def asked(scenario: Scenario, options: Options, repeat: int) -> Scenario:
-    """The scenario with the preset, seed, settings and attention that the options ask for."""
+    """The scenario with the preset, seed, settings, attention and legs that the options ask for."""
     return replace(
         scenario,
         preset=cast(Any, options.preset),
         seed=scenario.seed + options.seed + repeat,
         navigator=merged(scenario.navigator, options.settings),
         attention=options.attention or scenario.attention,
+        legs=options.legs or scenario.legs,
     )
 
 

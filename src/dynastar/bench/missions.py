@@ -24,7 +24,7 @@ class Options(NamedTuple):
 
     ``settings`` are the navigator's, as nested tables, over the preset's. ``observe`` is called with
     the suite's name and each mission that is driven, its repeat, its episode and its row.
-    ``attention`` is that of scripted walkers, None for the suite's own.
+    ``attention`` is that of scripted walkers, None for the suite's own; ``legs`` shows their legs alone.
     """
 
     data: Path | None = None
@@ -39,6 +39,7 @@ class Options(NamedTuple):
     settings: Mapping[str, Any] = {}
     quick: bool = False
     attention: Attention | None = None
+    legs: bool = False
     observe: Callable[..., None] | None = None
 
 

@@ -63,7 +63,7 @@ def run_jobs(
     """The row of each job and the seconds of CPU time it took, in the jobs' order."""
     settings = {
         "run": name,
-        **{key: getattr(options, key) for key in ("seed", "preset", "ideal", "attention")},
+        **{key: getattr(options, key) for key in ("seed", "preset", "ideal", "attention", "legs")},
         "settings": options.settings,
         "data": os.path.abspath(options.data or os.environ.get("DYNASTAR_DATA") or "."),
         "version": code_version() + controller_version(options.controller),
@@ -88,7 +88,7 @@ def result_of(
     published = getattr(suite, "PUBLISHED", ())
     return {
         "suite": name,
-        **{key: getattr(options, key) for key in ("preset", "seed", "ideal", "controller")},
+        **{key: getattr(options, key) for key in ("preset", "seed", "ideal", "controller", "legs")},
         "attention": options.attention or getattr(suite, "ATTENTION", "none"),
         "settings": dict(options.settings),
         **{key: round(value, 1) for key, value in seconds.items()},

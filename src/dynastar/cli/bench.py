@@ -91,6 +91,9 @@ def _add_missions(parser: argparse.ArgumentParser) -> None:
         help="of scripted walkers: late (the default of people and crowd), or none",
     )
     parser.add_argument(
+        "--legs", action="store_true", help="the lidar sees the legs of walkers, not their bodies"
+    )
+    parser.add_argument(
         "--controller",
         metavar="NAME",
         help="navigator (the default), pure_pursuit, printed, kompass_dwa, or MODULE:CLASS; `all` runs "
@@ -261,6 +264,7 @@ def _options(arguments: argparse.Namespace) -> "Options":
         settings=read_settings(arguments.set, arguments.preset),
         quick=arguments.quick,
         attention=arguments.attention,
+        legs=arguments.legs,
         observe=observe,
     )
 
@@ -273,6 +277,7 @@ def _refuse_driving(arguments: argparse.Namespace) -> None:
         "--save-failures": arguments.save_failures is not None,
         "--ideal": arguments.ideal,
         "--attention": arguments.attention,
+        "--legs": arguments.legs,
     }
     for option in (name for name, given in asked.items() if given):
         raise InputError(f"{option} has no effect: the suite {arguments.suite} drives nothing")

@@ -112,6 +112,7 @@ def read_scenario(source: Mapping[str, Any], folder: Path, name: str) -> Scenari
             read_mover(row, where, table.time_limit) for where, row in _rows(table.movers, "movers")
         ),
         attention=table.attention,
+        legs=table.legs,
         drive=table.drive,
         odometry=table.odometry,
         lidar=table.lidar,

@@ -52,6 +52,7 @@ class ScenarioTable(NamedTuple):
         Attention,
         Field("late: movers stop in front of a robot that rests or moves away, and go round it"),
     ] = "none"
+    legs: Annotated[bool, Field("the lidar sees the legs of movers, not their discs")] = False
     navigator: Annotated[Any, Field("settings that replace those of the preset")] = None
 
 

@@ -53,7 +53,7 @@ def _table(scenario: Scenario, folder: Path) -> dict[str, Any]:
     for key in ("time_limit", "latency", "goal_tolerance", "heading_tolerance", "seed"):
         table[key] = getattr(scenario, key)
     table |= {"unknown": scenario.unknown, "preset": scenario.preset}
-    table["attention"] = scenario.attention
+    table |= {"attention": scenario.attention, "legs": scenario.legs}
     table["start"] = _place(*scenario.start)
     table["robot"] = _robot(robot)
     table["sensor"] = {**robot.lidar._asdict(), **scenario.noise._asdict()}

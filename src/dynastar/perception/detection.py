@@ -19,7 +19,10 @@ ADJACENT = 3  # beams apart, up to which two points are neighbours
 BEHIND = 0.05  # m behind a point that has to have been seen free
 GAP = 0.2  # m between neighbouring points that separates two objects, besides the beams' spacing
 FEWEST = 3  # points of a group
-TYPICAL_RADIUS = 0.3  # m, assumed until both ends were in view
+FREE_FRACTION = 0.4  # of the points of a moving obstacle lie in space that was seen free before
+TYPICAL_RADIUS = 0.3  # m, assumed until both ends were in view, and of people by their legs
+LEG_RADIUS = 0.12  # m of a leg at most
+STRIDE = 0.7  # m between the legs of one person at most
 
 
 class Known(NamedTuple):
@@ -54,8 +57,10 @@ class Group:
     y: float
     radius: float
     free: float  # fraction of its points in space that an earlier scan showed as free
+    legs: bool  # a person's leg, or two
     hidden: int  # ends hidden or cut off by the field of view: NEITHER, FIRST, LAST or BOTH
-    taken: bool  # by a track
+    paired: bool  # with another leg
+    taken: bool  # by a track, or by the other leg
 
 
 POINT, GROUP = record(Point), record(Group)
@@ -87,6 +92,7 @@ def find_groups(points, sensor, known, space, tracks, widest):
         if stop - start >= FEWEST:
             groups[m].start, groups[m].stop = start, stop
             m += describe(groups[m], rolled, sensor, tracks, widest)
+    join_legs(groups[:m])
     return groups[:m], rolled
 
 
@@ -187,15 +193,44 @@ def describe(group, points, sensor, tracks, widest):
     group.owner = first.owner
     behind_before, behind_after = first.jump >= -0.5 * GAP, after.jump <= 0.5 * GAP
     group.hidden = FIRST * (behind_before and first.jump < np.inf) + LAST * behind_after
-    n_free = 0
+    n_free, nearest, farthest = 0, np.inf, 0.0
     for point in points[group.start : group.stop]:
         n_free += point.free
+        nearest, farthest = min(nearest, point.range), max(farthest, point.range)
     group.free = n_free / (group.stop - group.start)
-    radius = tracks[group.owner].radius if group.owner != UNOWNED else 0.0
+    owned = group.owner != UNOWNED
+    of_legs = owned and tracks[group.owner].legs
+    radius = tracks[group.owner].radius if owned and not of_legs else 0.0
     group.x, group.y, seen = fit_disc(points, group, sensor, radius)
-    assumed = radius if group.owner != UNOWNED else TYPICAL_RADIUS
-    group.radius = seen if group.hidden == NEITHER else max(assumed, seen)
+    narrow = group.hidden == NEITHER and max(seen, farthest - nearest) < LEG_RADIUS
+    group.legs = narrow and (of_legs or group.free >= FREE_FRACTION)
+    group.radius = seen
+    if group.hidden != NEITHER or group.legs:
+        group.radius = max(radius if radius > 0.0 else TYPICAL_RADIUS, seen)
     return seen <= 0.5 * widest and (not first.wide or seen > 0.25 * GAP)
+
+
+@inner
+def join_legs(groups):
+    """Make one group of each two legs of a person, nearest pairs first: its centre is their middle.
+
+    Both belong to the same track, or to none, and are at most ``STRIDE`` apart. The second is taken.
+    """
+    while True:
+        first = second = -1
+        nearest = STRIDE
+        for i in range(len(groups)):
+            for j in range(i):
+                a, b = groups[i], groups[j]
+                distance = math.hypot(a.x - b.x, a.y - b.y)
+                legs = a.legs and b.legs and a.owner == b.owner
+                if legs and not a.paired and not b.paired and distance < nearest:
+                    first, second, nearest = j, i, distance
+        if first < 0:
+            return
+        a, b = groups[first], groups[second]
+        a.x, a.y = 0.5 * (a.x + b.x), 0.5 * (a.y + b.y)
+        a.paired = b.paired = b.taken = True
 
 
 @inner

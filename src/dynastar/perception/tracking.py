@@ -110,10 +110,11 @@ class Tracker:
         kept = self._records[self._records["state"] != kernels.LOST]
         self._records = np.zeros(len(kept) + len(groups), kernels.TRACK)
         self._records[: len(kept)], new = kept, self._records[len(kept) :]
-        for name in ("x", "y", "radius", "free", "hidden"):
+        for name in ("x", "y", "radius", "free", "hidden", "legs"):
             new[name] = groups[name]
         new["start_x"], new["start_y"] = groups["x"], groups["y"]
-        new["var_x"], new["var_v"] = kernels.ERROR**2, kernels.NEW_SPEED**2
+        new["var_x"] = np.where(groups["legs"], kernels.LEGS_ERROR, kernels.ERROR) ** 2
+        new["var_v"] = kernels.NEW_SPEED**2
         new["born"] = new["seen"] = new["moved"] = self._stamp
         new["id"] = self._next_id + np.arange(len(new))
         self._next_id += len(new)

@@ -5,7 +5,14 @@ import math
 import numpy as np
 
 from dynastar.compiled import inner, njit, record
-from dynastar.perception.detection import MAPPED, NEITHER, TYPICAL_RADIUS, UNOWNED, fit_disc
+from dynastar.perception.detection import (
+    FREE_FRACTION,
+    MAPPED,
+    NEITHER,
+    TYPICAL_RADIUS,
+    UNOWNED,
+    fit_disc,
+)
 from dynastar.perception.past_scans import seen_free
 
 TENTATIVE, CONFIRMED, STOPPED, LOST = range(4)  # states
@@ -13,6 +20,8 @@ NO_GROUP = -1
 NEW_SPEED = 1.0  # m/s, standard deviation of the velocity of a new track
 ERROR = 0.01  # m, standard deviation of a centre with both ends in view, besides the beams' spacing
 HIDDEN_ERROR = (1.0, 2.0, 2.0, 10.0)  # times that with NEITHER, FIRST, LAST, BOTH ends hidden
+LEGS_ERROR, LEG_ERROR = 0.2, 0.4  # m, those of a person of whom both legs are seen, or one
+PAIR_RADIUS = 0.2  # m of two legs side by side at most
 MARGIN = 0.1  # m round a disc where points are still its own; farther from its start, it has moved
 SURE = 2.0  # standard deviations
 STEADY = 0.14  # s that motion has to last
@@ -20,7 +29,6 @@ FITS = 4.0  # the largest misfit of steady motion; 2 is expected
 SHIFT = 0.05  # m that the centre of what moves shifts by at most when an end comes into view or out
 MISSED = 0.35  # s that something in view may go undetected
 ACCELERATION = 0.1  # m2/s3, spectral density of the acceleration
-FREE_FRACTION = 0.4  # of the points of a moving obstacle lie in space that was seen free before
 REST_SPEED = 0.12  # m/s below which a track is at rest
 REST_TIME = 1.0  # s at rest after which a track has stopped
 SMOOTHING = 0.3  # s over which the radius, ``free`` and ``misfit`` are averaged
@@ -43,6 +51,7 @@ class Fields:
     margin: float  # m round the disc where points are still its own, -inf for none
     measured: float  # s with both ends in view; until then the radius is assumed
     free: float  # fraction of its points in space that an earlier scan showed as free
+    legs: bool  # of a person: the radius is TYPICAL_RADIUS
     misfit: float  # mean square of its innovations, normalised
     start_x: float  # m, where it was first seen or has stopped
     start_y: float
@@ -128,26 +137,26 @@ def correct(track, group, points, sensor):
     """Kalman update of a track with the disc that fits its group.
 
     The centre shifts, which is no motion, where the radius is corrected and where an end comes into
-    view or out of it; that of a track known to move by SHIFT at most.
+    view or out of it; that of a track known to move by SHIFT at most. The legs of a person have another
+    centre, with an error of its own, and no radius to be measured.
     """
     dt = min(max(sensor.stamp - track.seen, 1e-3), 1.0)
-    x, y, seen = fit_disc(points, group, sensor, track.radius)
+    too_wide = group.hidden == NEITHER and group.radius > PAIR_RADIUS
+    track.legs = group.legs or (track.legs and not too_wide)
+    if track.legs:
+        x, y, track.radius = group.x, group.y, TYPICAL_RADIUS
+        error = LEGS_ERROR if group.paired else LEG_ERROR
+    else:
+        x, y, seen = fit_disc(points, group, sensor, track.radius)
+        spacing = 0.3 * abs(sensor.step) * math.hypot(x - sensor.x, y - sensor.y)
+        error = HIDDEN_ERROR[group.hidden] * math.hypot(ERROR, spacing)
     ex, ey = x - track.x, y - track.y
-    radius = track.radius
-    if group.hidden == NEITHER:
-        radius += dt / (min(track.measured, SMOOTHING) + dt) * (seen - radius)
-        track.measured += dt
-    elif track.measured == 0.0:
-        radius = max(radius, seen)
-    if radius != track.radius:
-        track.radius = radius
-        x1, y1, _ = fit_disc(points, group, sensor, radius)
-        shift(track, x1 - x, y1 - y)
-    spacing = 0.3 * abs(sensor.step) * math.hypot(x - sensor.x, y - sensor.y)
-    s = track.var_x + HIDDEN_ERROR[group.hidden] ** 2 * (ERROR * ERROR + spacing * spacing)
+    if not track.legs:
+        correct_radius(track, group, points, sensor, (x, y, seen), dt)
+    s = track.var_x + error * error
     k_p, k_v = track.var_x / s, track.cov_xv / s
     track.misfit += dt / (SMOOTHING + dt) * ((ex * ex + ey * ey) / s - track.misfit)
-    if track.hidden != group.hidden:
+    if track.hidden != group.hidden and not track.legs:
         most = SHIFT if track.state == CONFIRMED else np.inf
         part = min(1.0, most / max(math.hypot(ex, ey), 1e-9))
         shift(track, part * ex, part * ey)
@@ -163,6 +172,22 @@ def correct(track, group, points, sensor):
     gain = dt / (min(track.seen - track.born, SMOOTHING) + dt)
     track.free += gain * (group.free - track.free)
     track.seen = sensor.stamp
+
+
+@inner
+def correct_radius(track, group, points, sensor, disc, dt):
+    """Average the radius with that of ``disc`` (x, y, seen), which fits with the present radius."""
+    x, y, seen = disc
+    radius = track.radius
+    if group.hidden == NEITHER:
+        radius += dt / (min(track.measured, SMOOTHING) + dt) * (seen - radius)
+        track.measured += dt
+    elif track.measured == 0.0:
+        radius = max(radius, seen)
+    if radius != track.radius:
+        track.radius = radius
+        x1, y1, _ = fit_disc(points, group, sensor, radius)
+        shift(track, x1 - x, y1 - y)
 
 
 @inner

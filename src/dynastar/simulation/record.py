@@ -143,7 +143,7 @@ def described(scenario: Scenario, seed: int) -> dict[str, Any]:
     Movers' keys are left out where ``source`` says what the scenario was read from.
     """
     names = ("name", "start", "goals", "noise", "latency", "goal_tolerance", "heading_tolerance")
-    more = ("time_limit", "unknown", "preset", "navigator", "source", "attention")
+    more = ("time_limit", "unknown", "preset", "navigator", "source", "attention", "legs")
     movers = () if scenario.source else tuple(vars(mover) for mover in scenario.movers)
     imperfect = [name for name in PERFECT if getattr(scenario, name) != PERFECT[name]]
     data = {name: plain(getattr(scenario, name)) for name in (*names, *more, *imperfect)}

@@ -77,7 +77,8 @@ class Scenario:
     ``obstacles`` are simple polygons (k, 2) in metres that no map has. ``faults`` strike during the
     run; ``drive``, ``odometry``, ``lidar`` and ``loop`` are what hardware does all the time, whatever
     the navigator is told. With ``attention`` "late", movers stop in front of a robot that rests or moves
-    away, and go round it (``LateWalkers``). ``crowd`` are pedestrians who react to the robot (needs the
+    away, and go round it (``LateWalkers``). With ``legs`` the lidar sees the legs of movers and pedestrians
+    (``Legs``); contacts are with their discs. ``crowd`` are pedestrians who react to the robot (needs the
     extra ``pedestrians``). ``navigator`` overrides settings of the preset, as nested tables. ``source`` is
     what the scenario was read from.
     """
@@ -91,6 +92,7 @@ class Scenario:
     obstacles: tuple[Floats, ...] = ()
     movers: tuple[Mover, ...] = ()
     attention: Attention = "none"
+    legs: bool = False
     crowd: tuple[Pedestrian, ...] = ()
     faults: tuple[Fault, ...] = ()
     noise: Noise = Noise()

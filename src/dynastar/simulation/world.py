@@ -17,6 +17,7 @@ from dynastar.simulation.attention import LateWalkers
 from dynastar.simulation.contact import RESTING, Solids
 from dynastar.simulation.crowd import Crowd
 from dynastar.simulation.drivetrain import DriveSimulator
+from dynastar.simulation.legs import Legs
 from dynastar.simulation.lidar import LidarSimulator
 from dynastar.simulation.movers import Movers, gap_to_discs
 from dynastar.simulation.noise import cut_gaussian
@@ -131,6 +132,8 @@ class World:
     def scan(self) -> LaserScan:
         """The present scan."""
         discs = np.column_stack([self.movers, self.mover_radii])
+        if self._scenario.legs:
+            discs = self._legs.discs(self.movers)
         return self._lidar.scan(self.pose, self.time, discs)
 
     def sensed_state(self) -> RobotState:
@@ -176,6 +179,7 @@ class World:
     def _set_movers(self, movers: Movers) -> None:
         crowd_radii = np.empty(0) if self._crowd is None else self._crowd.radii
         self._movers, self.mover_radii = movers, np.concatenate([movers.radii, crowd_radii])
+        self._legs = Legs(len(self.mover_radii))
 
     def _set_obstacles(self, rings: Sequence[Floats]) -> None:
         self._solids.change(rings)
