@@ -4,6 +4,7 @@ import json
 import pytest
 
 from dynastar.bench.report import REPORTS, Report, write, write_csv
+from dynastar.bench.selection import REPORT_SEEDS
 from dynastar.bench.tables import Table
 from dynastar.cli import build_parser, main
 
@@ -32,36 +33,23 @@ def test_the_command_knows_every_report():
         assert build_parser().parse_args(["paper", name]).what == name
 
 
+def test_the_paper_is_remade_on_worlds_that_are_for_report():
+    assert build_parser().parse_args(["paper"]).seed == REPORT_SEEDS
+
+
 @pytest.mark.slow
-def test_the_command_fills_a_page_with_table3(tmp_path, capsys):
-    page = tmp_path / "page.md"
-    page.write_text("a\n<!-- table3 -->\n<!-- end table3 -->\nb\n")
+def test_the_json_of_table3_has_its_tables_in_markdown(tmp_path, capsys):
     asked = ["paper", "table3", "--maps", "2", "--workers", "1", "--out", str(tmp_path / "out")]
-    assert main([*asked, "--docs", str(page), "--json-out", "-"]) == 0
-    found = json.loads(capsys.readouterr().out)["table3"]
+    assert main([*asked, "--json-out", "-"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    found = result["table3"]
     assert found["missions"] == 2
     assert {"arrived", "contacts_moving"} <= set(found)
     for ratio in ("length_ratio", "turning_ratio"):
         assert set(found[ratio]) == {"median", "p95", "worst"}
-    assert "| hybrid, length m |" in page.read_text()
-    assert page.read_text().startswith("a\n<!-- table3 -->\n**Table III over 2 worlds**")
-
-
-@pytest.mark.parametrize(
-    ("page", "said"),
-    [
-        (None, "there is no such file"),
-        ("<!-- table1 -->\n", "has no part between <!-- table1 --> and <!-- end table1 -->"),
-        (b"\xff\xfe\xff", "UTF-8"),
-    ],
-)
-def test_a_page_that_cannot_be_filled_is_said_before_the_work(tmp_path, capsys, page, said):
-    file = tmp_path / "page.md"
-    if page is not None:
-        file.write_bytes(page if isinstance(page, bytes) else page.encode())
-    assert main(["paper", "table3", "--docs", str(file), "--out", str(tmp_path / "out")]) == 2
-    assert said in capsys.readouterr().err
-    assert not (tmp_path / "out").exists()
+    assert set(result["tables"]) == {"table3-own", "table3", "table3-presets"}
+    assert result["tables"]["table3"].startswith("**Table III over 2 worlds**")
+    assert "| hybrid, length m |" in result["tables"]["table3"]
 
 
 def test_a_folder_is_no_file_for_json(tmp_path, capsys):
