@@ -12,7 +12,7 @@ FIND_PYTHON = for python in python3.11 python3 python3.12 python3.13 python; do 
 	$$python -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2>/dev/null \
 	&& echo $$python && break; done
 
-.PHONY: help setup check test test-ros test-all dist docs pictures demo suites paper bench clean
+.PHONY: help setup check test test-ros test-all dist docs pictures demo results bench clean
 
 help:
 	@echo "make setup   make .venv and install dynastar with its tools into it"
@@ -24,8 +24,7 @@ help:
 	@echo "make docs    the documentation as a site of HTML, in out/docs"
 	@echo "make pictures  the pictures of README and playground anew (needs chromium)"
 	@echo "make dist    wheel and source distribution in dist"
-	@echo "make suites  the suites movingai (needs DYNASTAR_DATA) and paper; JSON in out/suites"
-	@echo "make paper   the paper's tables and figures, and those of docs/paper.md; two and a half hours"
+	@echo "make results  all tables and pictures of the pages anew (needs DYNASTAR_DATA); about five hours, goes on"
 	@echo "make bench   how fast it is, beside others, in an environment of its own"
 	@echo "make clean   remove .venv, out and caches"
 
@@ -92,14 +91,8 @@ test-all: dist
 demo: setup
 	@$(BIN)/dynastar demo --out out/demo
 
-suites: setup
-	@mkdir -p out/suites
-	$(BIN)/dynastar bench movingai --json-out out/suites/movingai.json
-	$(BIN)/dynastar bench paper --missions 500 --json-out out/suites/paper.json
-
-paper: setup
-	$(BIN)/dynastar paper all --docs docs/paper.md --json-out out/paper.json
-	cp out/paper/fig*.png out/paper/table*.png out/paper/ablation.png docs/media/paper
+results: setup
+	$(BIN)/python benchmarks/results.py
 
 $(PEERS)/.installed: benchmarks/requirements.txt $(STAMP)
 	test -x $(PEERS)/bin/python || $(BIN)/python -m venv $(PEERS)

@@ -1,27 +1,21 @@
-"""Fills docs/benchmarks.md from results in a folder, between the page's markers.
+"""The tables of the scoreboard in docs/benchmarks.md, and a picture of each kind of failure.
 
-    dynastar bench all --quick --data DIR --out out/bench
-    python benchmarks/scoreboard_page.py out/bench --data DIR
-
-takes the scoreboard, the failures by kind, what limited the speed and the other controllers from
-out/bench/all.json. A picture of each kind of failure is drawn by `dynastar bench SUITE --replay N`.
+A picture is that of a mission which is run again: `dynastar bench SUITE --replay N`.
 """
 
-import argparse
-import json
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 from PIL import Image
 
 from dynastar.bench.scoreboard_tables import MOST_GROUPS
+from dynastar.bench.selection import REPORT_SEEDS
 
 DOCS = Path(__file__).parent.parent / "docs"
-PAGE, PICTURES = DOCS / "benchmarks.md", DOCS / "media" / "benchmarks"
+PICTURES = DOCS / "media" / "benchmarks"
 KINDS = {
     "moving": "contact while moving",
     "resting": "contact while standing still",
@@ -31,16 +25,6 @@ KINDS = {
 }
 
 Row = dict[str, Any]
-
-
-def filled(page: str, name: str, text: str) -> str:
-    """The page with the text between the markers of that name."""
-    begin, end = f"<!-- {name} -->", f"<!-- end of {name} -->"
-    before, _, rest = page.partition(begin)
-    _, found, after = rest.partition(end)
-    if not found:
-        raise SystemExit(f"{PAGE}: the markers {begin} and {end} are not there")
-    return f"{before}{begin}\n{text.strip()}\n{end}{after}"
 
 
 def kind_of(row: Row) -> str:
@@ -148,47 +132,31 @@ def controllers_table(found: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def bench(*arguments: str) -> None:
-    """Runs ``dynastar bench``; contacts are no error here."""
-    command = [sys.executable, "-m", "dynastar", "bench", *arguments]
-    if subprocess.run(command, stdout=subprocess.DEVNULL, check=False).returncode > 1:
-        raise SystemExit(f"failed: {' '.join(command)}")
+def draw(suite: str, number: int, file: Path, size: int, colours: int) -> None:
+    """Runs a mission of the report seed again and draws it, small."""
+    command = [sys.executable, "-m", "dynastar", "bench", suite, "--replay", str(number)]
+    command += ["--seed", str(REPORT_SEEDS), "--no-gif", "--out"]
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([*command, folder], stdout=subprocess.DEVNULL, check=True)
+        with Image.open(Path(folder) / "figure.png") as picture:
+            picture.thumbnail((size, size))
+            small = picture.convert("RGB").quantize(colours)
+    small.save(file, optimize=True)
 
 
-def pictures(found: dict[str, dict[str, list[int]]], data: Path) -> Iterable[str]:
-    """Draws the first mission of each kind, of the suite with most of them; its lines of the page."""
+def pictures(found: dict[str, dict[str, list[int]]]) -> str:
+    """Draws the first mission of each kind, of the suite with most of them; the lines of the page."""
     PICTURES.mkdir(parents=True, exist_ok=True)
     for old in PICTURES.glob("*.png"):
         old.unlink()
+    shown = []
     for kind, words in KINDS.items():
         of = found.get(kind)
         if not of:
             continue
         suite = max(of, key=lambda name: len(of[name]))
-        number = of[suite][0]
-        with tempfile.TemporaryDirectory() as folder:
-            options = ["--data", str(data), "--out", folder, "--no-gif"]
-            bench(suite, "--replay", str(number), *options)
-            with Image.open(Path(folder) / "figure.png") as picture:
-                picture.thumbnail((1000, 1000))
-                small = picture.convert("RGB").quantize(96)
-            small.save(PICTURES / f"{suite}-{number}.png", optimize=True)
-        title = f"`{suite}` {number}: {words}."
-        yield f"![{title.replace('`', '')}](media/benchmarks/{suite}-{number}.png)\n\n*{title}*"
-
-
-if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=Path, help="where all.json is")
-    parser.add_argument("--data", type=Path, required=True, help="the public data sets")
-    arguments = parser.parse_args()
-    everything = json.loads((arguments.folder / "all.json").read_text(encoding="utf-8"))
-    suites = everything["suites"]
-    found = failures(suites)
-    page = PAGE.read_text(encoding="utf-8")
-    page = filled(page, "scoreboard", scoreboard(suites))
-    page = filled(page, "failures", failures_table(found))
-    page = filled(page, "limits", limits_table(suites))
-    page = filled(page, "controllers", controllers_table(everything))
-    page = filled(page, "pictures", "\n\n".join(pictures(found, arguments.data)))
-    PAGE.write_text(page, encoding="utf-8")
+        name = f"{suite}-{of[suite][0]}.png"
+        draw(suite, of[suite][0], PICTURES / name, 1000, 96)
+        title = f"`{suite}` {of[suite][0]}: {words}."
+        shown.append(f"![{title.replace('`', '')}](media/benchmarks/{name})\n\n*{title}*")
+    return "\n\n".join(shown)

@@ -1,25 +1,12 @@
-"""Fills the tables of other simulators in docs/benchmarks.md, and draws their pictures.
+"""The tables and pictures of other simulators in docs/benchmarks.md."""
 
-    dynastar bench irsim --json-out irsim.json
-    dynastar bench navground --json-out navground.json
-    python benchmarks/simulators_page.py irsim.json navground.json
-
-A picture is that of a mission which is run again: `dynastar bench SUITE --replay N`.
-"""
-
-import argparse
-import json
-import tempfile
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 from statistics import fmean
 from typing import Any
 
-from PIL import Image
-from scoreboard_page import DOCS, PAGE, bench, filled
+from scoreboard_page import DOCS, draw
 
-SHOWN = {"irsim": (3, "ir-sim"), "navground": (5, "navground")}  # mission and name of the picture
-SIZE, COLOURS = (900, 900), 200
+SIZE, COLOURS = 900, 200
 
 Row = dict[str, Any]
 
@@ -74,25 +61,24 @@ def navground_table(rows: Sequence[Row]) -> str:
     return table("behavior", (*groups, "efficacy", "deadlocks"), lines)
 
 
-def draw(suite: str) -> None:
-    """Draws the picture of a suite, small."""
-    number, name = SHOWN[suite]
-    with tempfile.TemporaryDirectory() as folder:
-        bench(suite, "--replay", str(number), "--out", folder, "--no-gif")
-        with Image.open(Path(folder) / "figure.png") as picture:
-            picture.thumbnail(SIZE)
-            small = picture.convert("RGB").quantize(COLOURS)
-    small.save(DOCS / "media" / f"{name}.png", optimize=True)
+def irsim(result: Row) -> str:
+    """The table of ir-sim; draws its picture."""
+    draw("irsim", 3, DOCS / "media" / "ir-sim.png", SIZE, COLOURS)
+    return irsim_table(result["rows"])
 
 
-if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("irsim", type=Path, help="result of the suite irsim")
-    parser.add_argument("navground", type=Path, help="result of the suite navground")
-    arguments = parser.parse_args()
-    page = PAGE.read_text(encoding="utf-8")
-    for suite, write in (("irsim", irsim_table), ("navground", navground_table)):
-        rows = json.loads(getattr(arguments, suite).read_text(encoding="utf-8"))["rows"]
-        page = filled(page, suite, write(rows))
-        draw(suite)
-    PAGE.write_text(page, encoding="utf-8")
+def navground(result: Row) -> str:
+    """The table of navground and what it says of times; draws its picture."""
+    draw("navground", 5, DOCS / "media" / "navground.png", SIZE, COLOURS)
+    return f"{navground_table(result['rows'])}\n\n{navground_times(result['rows'])}"
+
+
+def navground_times(rows: Sequence[Row]) -> str:
+    """A sentence with the mean time of dynastar, and those of the behaviors."""
+    means = []
+    for of in (rows, *([row["beside"][name] for row in rows] for name in rows[0]["beside"])):
+        means.append(fmean(row["time"] for row in of if row["outcome"] == "arrived"))
+    return (
+        f"dynastar takes {means[0]:.1f} s and these behaviors {min(means[1:]):.1f} to "
+        f"{max(means[1:]):.1f} s in the mean: it plans for agents who do not give way."
+    )

@@ -1,0 +1,181 @@
+"""Writes what was measured into the pages: each block between its markers, and what it was measured on.
+
+A block is written as soon as all of its parts are there. At its top a page says on which commit, machine
+and day it was measured; while parts are missing it names the blocks that are of that commit.
+"""
+
+import shutil
+from collections.abc import Callable, Container, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import results_tables as tables
+import scoreboard_page as scoreboard
+import simulators_page as simulators
+from results_parts import parts
+from results_targets import TARGETS, targets_table
+
+from dynastar import io
+from dynastar.bench.figures import FIGURES
+from dynastar.bench.report import report_targets
+from dynastar.bench.tables import as_markdown, fill
+
+Found = Mapping[str, Any]  # the result of each part
+Record = Mapping[str, Mapping[str, Any]]  # of each part: tree, commit, machine, date, minutes
+
+README, BENCHMARKS, PAPER = "README.md", "docs/benchmarks.md", "docs/paper.md"
+RECORD = "docs/measured.json"
+TABLES = {  # of the paper's page, by part
+    "presets": ("presets",),
+    "table1": tuple(
+        f"table1-{name}" for name in ("own", "kinds", "cells", "length", "time", "512")
+    ),
+    "table3": ("table3-own", "table3", "table3-presets"),
+    "clutter": ("clutter",),
+    "ladder": ("ladder",),
+    "ablation": ("terms", "ablation-paper", "ablation-people"),
+}
+PICTURES = {  # of the paper's page, by part
+    "figures": tuple(FIGURES),
+    "table1": ("table1",),
+    "table3": ("table3",),
+    "ladder": ("ladder",),
+    "ablation": ("ablation",),
+}
+
+
+class Block(NamedTuple):
+    """What stands between two markers of a page, the parts that it needs, and what writes it."""
+
+    page: str
+    name: str
+    parts: tuple[str, ...]
+    text: Callable[[Found], str]
+
+
+def of_scoreboard(name: str, text: Callable[[Any], str]) -> Block:
+    """A block of docs/benchmarks.md that is made of the scoreboard alone."""
+    return Block(BENCHMARKS, name, ("scoreboard",), lambda found: text(found["scoreboard"]))
+
+
+def paper_table(part: str, name: str, found: Found) -> str:
+    """A table of `dynastar paper`, the ladder's with its picture."""
+    table: str = found[part]["tables"][name]
+    if name == "ladder":
+        table += "\n\n![From print to robot](media/paper/ladder.png)"
+    return table
+
+
+def paper_targets(found: Found) -> str:
+    """The table of the paper page's targets."""
+    [table] = report_targets({**found["table1"], **found["table3"]}).tables
+    return as_markdown(table)
+
+
+def failures(everything: Mapping[str, Any]) -> dict[str, dict[str, list[int]]]:
+    """Numbers of the navigator's missions of the scoreboard that failed, by kind and suite."""
+    return scoreboard.failures(everything["suites"])
+
+
+VARIANTS = ("crowdnav", "crowdnav_variants", "crowdnav_orca")
+ATTENTION = ("people_late", "people_none", "crowd_late", "crowd_none")
+ALL = {part.name: part for part in parts()}
+BLOCKS = (
+    of_scoreboard("scoreboard", lambda of: scoreboard.scoreboard(of["suites"])),
+    of_scoreboard("failures", lambda of: scoreboard.failures_table(failures(of))),
+    of_scoreboard("limits", lambda of: scoreboard.limits_table(of["suites"])),
+    of_scoreboard("controllers", scoreboard.controllers_table),
+    of_scoreboard("pictures", lambda of: scoreboard.pictures(failures(of))),
+    Block(BENCHMARKS, "attention", ATTENTION, tables.attention_table),
+    Block(BENCHMARKS, "quality", ("scoreboard",), tables.quality_table),
+    Block(BENCHMARKS, "crowdnav", ("crowdnav", "crowdnav_orca"), tables.crowdnav_table),
+    Block(
+        BENCHMARKS,
+        "variants",
+        VARIANTS,
+        lambda found: tables.variants_table({part: found[part] for part in VARIANTS}),
+    ),
+    Block(BENCHMARKS, "dynabarn-slow", ("dynabarn_slow",), tables.slow_table),
+    Block(
+        BENCHMARKS,
+        "targets",
+        tuple(dict.fromkeys(target.part for target in TARGETS)),
+        lambda found: targets_table(found, ALL),
+    ),
+    Block(BENCHMARKS, "irsim", ("irsim",), lambda found: simulators.irsim(found["irsim"])),
+    Block(
+        BENCHMARKS,
+        "navground",
+        ("navground",),
+        lambda found: simulators.navground(found["navground"]),
+    ),
+    Block(BENCHMARKS, "speed", ("barn",), tables.speed),
+    *(
+        Block(PAPER, name, (part,), partial(paper_table, part, name))
+        for part, names in TABLES.items()
+        for name in names
+    ),
+    Block(PAPER, "targets", ("table1", "table3"), paper_targets),
+    Block(
+        README,
+        "results",
+        ("scoreboard", "people_none", "crowdnav", "crowdnav_orca", "navground", "table1"),
+        tables.readme_table,
+    ),
+)
+PAGES = tuple(dict.fromkeys(block.page for block in BLOCKS))
+
+
+def parts_of(page: str) -> list[str]:
+    """Names of the parts that a page shows."""
+    names = [name for block in BLOCKS if block.page == page for name in block.parts]
+    return list(dict.fromkeys([*names, *(PICTURES if page == PAPER else ())]))
+
+
+def blocks_of(page: str, parts: Container[str]) -> list[Block]:
+    """The blocks of a page whose parts are all there."""
+    of = (block for block in BLOCKS if block.page == page)
+    return [block for block in of if all(part in parts for part in block.parts)]
+
+
+def header(page: str, record: Record) -> str:
+    """What a page says at its top: commit, machine and day, and which blocks, while parts are missing."""
+    blocks = blocks_of(page, record)
+    shown = [record[name] for name in {name for block in blocks for name in block.parts}]
+    if not shown:
+        return "The figures of this page are of earlier commits."
+    commits, machines, days = (
+        sorted({of[key] for of in shown}) for key in ("commit", "machine", "date")
+    )
+    when = days[0] if len(days) == 1 else f"{days[0]} to {days[-1]}"
+    words = f"Measured on commit {', '.join(commits)} ({'; '.join(machines)}; {when})"
+    if all(name in record for name in parts_of(page)):
+        return f"{words}."
+    names = ", ".join(f"`{block.name}`" for block in blocks)
+    return f"{words}: {names}. All other figures of this page are of earlier commits."
+
+
+def write(root: Path, found: Found, record: Record) -> list[str]:
+    """Writes the pages and the record of what they show; what was written, in words."""
+    said = []
+    for page in PAGES:
+        file = root / page
+        document = file.read_text(encoding="utf-8")
+        blocks = blocks_of(page, found)
+        for block in blocks:
+            document = fill(document, block.name, block.text(found).strip(), file)
+        document = fill(document, "measured", header(page, record), file)
+        file.write_text(document, encoding="utf-8")
+        missing = [name for name in parts_of(page) if name not in found]
+        left = f"; missing: {', '.join(missing)}" if missing else ""
+        said.append(f"{page}: {len(blocks)} blocks{left}")
+    io.write_json(root / RECORD, record)
+    return said
+
+
+def copy_pictures(folder: Path, done: Sequence[str]) -> None:
+    """Copies the paper's pictures of the parts that are done to where its page shows them."""
+    for part in PICTURES:
+        for name in PICTURES[part] if part in done else ():
+            shutil.copy(folder / f"{name}.png", Path(scoreboard.DOCS, "media", "paper"))

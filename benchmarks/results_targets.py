@@ -1,0 +1,157 @@
+"""The table of the targets in docs/benchmarks.md."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+from results_parts import Part
+
+Result = Mapping[str, Any]
+Measured = tuple[str, bool]  # in words, and whether the target is met
+
+CHALLENGE = {"easy": 0.97, "medium": 0.93, "hard": 0.78}  # of DynaBARN
+
+
+class Target(NamedTuple):
+    """A line of the table: the part that measures it, the target in words, and what is measured."""
+
+    what: str
+    part: str
+    target: str
+    measured: Callable[[Result], Measured]
+
+
+def counted(result: Result) -> str:
+    """Successes of missions, in words."""
+    return f"{result['succeeded']} of {result['missions']}"
+
+
+def contacts_of(result: Result) -> str:
+    """Contacts while moving and at rest, in words; "" if there are none."""
+    moving, resting = result["contacts_moving"], result["contacts_resting"]
+    words = [f"{moving} moving contact{'' if moving == 1 else 's'}"] if moving else []
+    words += [f"{resting} contact{'' if resting == 1 else 's'} at rest"] if resting else []
+    return ", ".join(words)
+
+
+def missions(
+    share: float, ratio: float | None = None, contacts: int | None = None
+) -> Callable[[Result], Measured]:
+    """At least a ``share`` of successes, with the time ratio and the contacts at most as given."""
+
+    def measured(result: Result) -> Measured:
+        words = [counted(result)]
+        met = result["succeeded"] >= share * result["missions"]
+        if ratio is not None:
+            words.append(f"{result['time_ratio']:.2f}")
+            met = met and result["time_ratio"] <= ratio
+        touched = contacts_of(result)
+        if contacts is not None:
+            touched = touched or "no contact"
+            met = met and result["contacts_moving"] + result["contacts_resting"] <= contacts
+        return ", ".join([*words, touched] if touched else words), met
+
+    return measured
+
+
+def barn(result: Result) -> Measured:
+    """Successes and score."""
+    met = result["succeeded"] >= 0.99 * result["missions"] and result["score"] >= 0.495
+    return f"{counted(result)}, {result['score']:.3f}", met
+
+
+def dynabarn(result: Result) -> Measured:
+    """Successes by difficulty, and which of them are missed."""
+    groups = [result["groups"][name] for name in CHALLENGE]
+    words = f"{', '.join(str(of['succeeded']) for of in groups)} of {groups[0]['missions']}"
+    shares = zip(CHALLENGE.values(), groups, strict=True)
+    return words, all(of["succeeded"] >= share * of["missions"] for share, of in shares)
+
+
+def office(result: Result) -> Measured:
+    """Successes, the mean time and the longest."""
+    longest = max(row["time"] for row in result["rows"])
+    words = f"{counted(result)}, {result['mean_time']:.1f} s, the slowest {longest:.1f} s"
+    return words, result["succeeded"] == result["missions"]
+
+
+def table3(result: Result) -> Measured:
+    """Shares of arrivals and of moving contacts."""
+    of = result["table3"]
+    arrived, moving = (100.0 * of[key] / of["missions"] for key in ("arrived", "contacts_moving"))
+    met = arrived >= 99.5 and moving <= 0.2
+    return f"{arrived:.1f} %, {moving:.1f} % of {of['missions']}", met
+
+
+def ratio(name: str, **most: float) -> Callable[[Result], Measured]:
+    """Quantiles of a ratio of Table I over all maps, each at most as given."""
+
+    def measured(result: Result) -> Measured:
+        of = result["table1"]["all"][name]
+        words = ", ".join(f"{of[quantile]:.2f}" for quantile in most)
+        return words, all(of[quantile] <= limit for quantile, limit in most.items())
+
+    return measured
+
+
+TARGETS = (
+    Target("BARN, 150 worlds: arrived, score", "barn", "99 %, 0.495", barn),
+    Target("DynaBARN: easy, medium, hard", "dynabarn", "97, 93, 78 %", dynabarn),
+    Target("MRPB: arrived, time over the bound", "mrpb", "all, 1.3", missions(1.0, 1.3)),
+    Target(
+        "recorded crowds who notice the robot late: crossed without contact",
+        "crowd_late",
+        "95 %",
+        missions(0.95),
+    ),
+    Target("recorded crowds who do not react", "crowd_none", "82 %", missions(0.82)),
+    Target("real maps with unmapped boxes and walkers", "maps", "99 %, 1.3", missions(0.99, 1.3)),
+    Target("the demo's office, 40 seeds", "office", "all", office),
+    Target(
+        "random static worlds: rightly ended, time over the bound",
+        "random",
+        "99 %, 1.35",
+        missions(0.99, 1.35),
+    ),
+    Target(
+        "robots as they are sold: rightly ended, contacts",
+        "robots",
+        "98 %, 0",
+        missions(0.98, contacts=0),
+    ),
+    Target("the same in MuJoCo", "physics", "98 %, 0", missions(0.98, contacts=0)),
+    Target("people who notice the robot late", "people_late", "88 %", missions(0.88)),
+    Target("people who do not react", "people_none", "72 %", missions(0.72)),
+    Target("faults of sensors, odometry, clock, drive, map", "faults", "all", missions(1.0)),
+    Target("worlds like the paper's: arrived, moving contacts", "table3", "99.5 %, 0.2 %", table3),
+    Target("MovingAI: optimal length found", "movingai", "all", missions(1.0)),
+    Target(
+        "cells expanded over traditional A*, 1000 maps, median",
+        "table1",
+        "0.25",
+        ratio("expanded_ratio", median=0.25),
+    ),
+    Target(
+        "length, fast smoothing, over traditional A*, median and 95th percentile",
+        "table1",
+        "0.95, 1.05",
+        ratio("length_ratio_fast", median=0.95, p95=1.05),
+    ),
+    Target(
+        "search and fast smoothing over the traditional search, time",
+        "table1",
+        "1",
+        ratio("total_time_ratio", median=1.0),
+    ),
+)
+
+
+def targets_table(found: Mapping[str, Result], parts: Mapping[str, Part]) -> str:
+    """A line for each target, with the command of its part."""
+    lines = ["| what | command | target | measured |", "|:--|:--|:--|:--|"]
+    for target in TARGETS:
+        words, met = target.measured(found[target.part])
+        shown = f"`{parts[target.part].shown}`"
+        lines.append(
+            f"| {target.what} | {shown} | {target.target} | {words}{'' if met else ': missed'} |"
+        )
+    return "\n".join(lines)
