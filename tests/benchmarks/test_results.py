@@ -15,6 +15,12 @@ PARTS = {part.name: part for part in parts()}
 WRITES = "import sys; open(sys.argv[1], 'w').write('{}')"
 
 
+@pytest.fixture(autouse=True)
+def environment(monkeypatch):
+    """The command sets the folder of the data; afterwards it is what it was."""
+    monkeypatch.setenv("DYNASTAR_DATA", "")
+
+
 @pytest.fixture
 def runs(monkeypatch):
     """Names of the parts that are run, each by a program that only writes an empty result."""
