@@ -90,7 +90,7 @@ def test_bad_arguments(
     ("words", "others"),
     [
         ([], scoreboard.COMPETITORS),
-        (["--quick"], ("pure_pursuit", "kompass_dwa")),
+        (["--quick"], ("pure_pursuit", "kompass_dwa", "orca")),
         (["--controller", "navigator"], ()),
         (["--quick", "--controller", "printed"], ()),
     ],

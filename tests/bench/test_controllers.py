@@ -17,6 +17,7 @@ from dynastar.errors import ConfigError, GoalOccupied
 from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.metrics import measure
 from dynastar.navigator import NavigatorConfig, RobotState
+from dynastar.perception import MovingObstacle
 from dynastar.robot import ROBOTS
 from dynastar.scan import LaserScan
 from dynastar.simulation import Fault, Mover, Noise, Scenario, drive
@@ -45,7 +46,7 @@ def driven(scenario, controller="pure_pursuit"):
 def test_the_navigator_is_the_default():
     assert controller_named("navigator") is None
     assert controller_named("pure_pursuit") is PurePursuit
-    assert set(BUILT_IN) == {"navigator", "pure_pursuit", "printed", "kompass_dwa"}
+    assert set(BUILT_IN) == {"navigator", "pure_pursuit", "printed", "kompass_dwa", "orca"}
 
 
 def test_a_class_of_ones_own_is_imported(monkeypatch):
@@ -76,10 +77,11 @@ def test_a_wrong_name_is_explained(name, words):
         controller_named(name)
 
 
-def test_kompass_says_how_to_install_it(monkeypatch):
-    monkeypatch.setattr("dynastar.bench.controllers.find_spec", lambda name: None)
-    with pytest.raises(ConfigError, match=r"pip install '\.\[kompass\]'"):
-        controller_named("kompass_dwa")
+@pytest.mark.parametrize(("name", "extra"), [("kompass_dwa", "kompass"), ("orca", "crowdnav")])
+def test_a_controller_says_how_to_install_its_package(monkeypatch, name, extra):
+    monkeypatch.setattr("dynastar.bench.controllers.find_spec", lambda module: None)
+    with pytest.raises(ConfigError, match=rf"{name} needs .* pip install '\.\[{extra}\]'"):
+        controller_named(name)
 
 
 # -- costmap and route -----------------------------------------------------------------------------
@@ -264,3 +266,47 @@ def test_kompass_goes_round_what_no_map_has(robot):
     assert found.min_clearance > 0.0
     again, _ = driven(mission(robot, obstacles=(BOX,)), "kompass_dwa")
     assert np.array_equal(episode.trajectory.poses, again.trajectory.poses)
+
+
+# -- ORCA ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("robot", [ROUND, JACKAL], ids=["disc", "polygon"])
+@pytest.mark.parametrize("obstacles", [(), (BOX,)], ids=["empty", "box"])
+def test_orca_arrives_in_a_room_with_and_without_a_box(robot, obstacles):
+    pytest.importorskip("pyrvo", reason="pip install '.[crowdnav]'")
+    _, found = driven(mission(robot, obstacles=obstacles), "orca")
+    assert found.outcome == "arrived"
+    assert found.min_clearance > 0.03
+    assert found.length < 5.7
+
+
+@pytest.mark.parametrize("x", [3.5, 4.0, 4.5])
+def test_orca_passes_a_walker_who_crosses_without_a_stop(x):
+    pytest.importorskip("pyrvo", reason="pip install '.[crowdnav]'")
+    walker = Mover(0.3, np.array([0.0, 8.0]), np.array([[x, 0.8], [x, 5.2]]))
+    episode, found = driven(mission(movers=(walker,)), "orca")
+    assert found.outcome == "arrived"
+    assert found.contacts_moving == found.contacts_resting == 0
+    assert found.time < 7.0  # pure pursuit waits until the walker has gone by
+    again, _ = driven(mission(movers=(walker,)), "orca")
+    assert np.array_equal(episode.trajectory.poses, again.trajectory.poses)
+
+
+def test_walls_of_orca_lie_to_the_left_of_their_outlines_and_leave_out_people():
+    orca = pytest.importorskip("dynastar.bench.controllers.orca", reason="needs pyrvo")
+    known = room(8.0, 6.0, (3.6, 0.0, 4.0, 4.0), (2.0, 4.9, 2.1, 5.0))
+    controller = orca.Orca(known, ROUND, NavigatorConfig())
+    person = MovingObstacle(2.05, 4.95, 0.0, 0.0, 0.2)
+    for people, count in (([], 3), ([person], 2)):
+        blocked, corner = controller._static(Pose2D(2.0, 3.0), 9.0, people)
+        outlines = controller._outlines(blocked, corner)
+        areas = [shoelace(outline) for outline in outlines]
+        assert len(areas) == count
+        inside = [area for area in areas if area < 0.0]
+        assert inside == pytest.approx([-(7.8 * 5.8 - 0.4 * 3.9)], rel=0.02)  # round the free space
+
+
+def shoelace(ring):
+    x, y = ring.T
+    return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))

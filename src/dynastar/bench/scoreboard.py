@@ -18,8 +18,8 @@ from dynastar.viewer.intervals import Estimate, Measure, draw_intervals
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-COMPETITORS = ("pure_pursuit", "kompass_dwa", "printed")  # that drive beside the navigator
-QUICK_COMPETITORS = COMPETITORS[:2]  # printed takes longer than all others together
+COMPETITORS = ("pure_pursuit", "kompass_dwa", "orca", "printed")  # that drive beside the navigator
+QUICK_COMPETITORS = COMPETITORS[:3]  # printed takes longer than all others together
 
 Result = Mapping[str, Any]
 Planned = dict[

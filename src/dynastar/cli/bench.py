@@ -96,8 +96,8 @@ def _add_missions(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--controller",
         metavar="NAME",
-        help="navigator (the default), pure_pursuit, printed, kompass_dwa, or MODULE:CLASS; `all` runs "
-        "the first four (--quick: without printed) unless one is named",
+        help="navigator (the default), pure_pursuit, printed, kompass_dwa, orca, or MODULE:CLASS; `all` "
+        "runs the first five (--quick: without printed) unless one is named",
     )
     add_set(parser)
     parser.add_argument(

@@ -29,6 +29,11 @@ BUILT_IN = {
     "pure_pursuit": "dynastar.bench.controllers.pure_pursuit:PurePursuit",
     "printed": "dynastar.bench.controllers.printed:Printed",
     "kompass_dwa": "dynastar.bench.controllers.kompass:KompassDwa",
+    "orca": "dynastar.bench.controllers.orca:Orca",
+}
+PACKAGES = {  # that a controller needs: module, name on the index, extra
+    "kompass_dwa": ("kompass_core", "kompass-core", "kompass"),
+    "orca": ("pyrvo", "pyrvo", "crowdnav"),
 }
 NEEDED = ("set_goal", "command")
 
@@ -41,10 +46,10 @@ def controller_named(name: str) -> Callable[..., Any] | None:
     """
     if name == "navigator":
         return None
-    if name == "kompass_dwa" and find_spec("kompass_core") is None:
-        raise ConfigError(
-            f"the controller kompass_dwa needs kompass-core: {how_to_install('kompass')}"
-        )
+    if name in PACKAGES:
+        module, package, extra = PACKAGES[name]
+        if find_spec(module) is None:
+            raise ConfigError(f"the controller {name} needs {package}: {how_to_install(extra)}")
     where = BUILT_IN.get(name, name)
     module_name, colon, class_name = where.partition(":")
     if not (colon and module_name and class_name):

@@ -199,7 +199,11 @@ class PathController(ABC):
             return
         self._scan_stamp = scan.stamp
         taken = min(self._poses, key=lambda past: abs(past.stamp - scan.stamp))
-        changed = self.costmap.see(taken.pose, scan)
+        self.see(taken.pose, scan)
+
+    def see(self, pose: Pose2D, scan: LaserScan) -> None:
+        """Takes in a scan from the robot at ``pose``."""
+        changed = self.costmap.see(pose, scan)
         if changed is not None:
             self.route.mark(changed)
 
@@ -212,6 +216,26 @@ class PathController(ABC):
             if gaps.min() >= min(0.0, float(gaps[0]) - 1e-6):
                 return Twist(0.0, self.turning(turn))
         return None
+
+    def free_length(
+        self, pose: Pose2D, curvature: float, reach: float, around: Surroundings
+    ) -> float:
+        """Metres along an arc up to the first contact, at most ``reach`` and two thirds of a turn."""
+        if abs(curvature) > 1e-6:
+            reach = min(reach, 4.0 / abs(curvature))
+        steps = np.arange(0.0, reach + 0.05, 0.05)
+        half = 0.5 * curvature * steps
+        chord = steps * np.sinc(half / np.pi)
+        poses = np.column_stack(
+            [
+                pose.x + chord * np.cos(pose.theta + half),
+                pose.y + chord * np.sin(pose.theta + half),
+                pose.theta + 2.0 * half,
+            ]
+        )
+        gaps = around.gaps(poses, self.discs)
+        touching = np.flatnonzero(gaps < min(0.0, float(gaps[0]) - 1e-6))
+        return float(steps[max(touching[0] - 1, 0)]) if len(touching) else reach
 
     def turning(self, off: float) -> float:
         """The turning rate (rad/s) that brakes in time to turn by ``off`` (rad)."""

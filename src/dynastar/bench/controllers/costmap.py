@@ -92,15 +92,19 @@ class Costmap:
         )
         return self.grid.frame.points_to_grid(ends)
 
-    def surroundings(self, pose: Pose2D, reach: float) -> "Surroundings":
-        """The blocked cells within ``reach`` metres of ``pose``, to look for contact in."""
+    def window(self, pose: Pose2D, reach: float) -> tuple[Mask, tuple[int, int]]:
+        """The cells within ``reach`` metres of ``pose`` that are blocked, and the first of them."""
         row, column = self.grid.frame.to_grid(pose.x, pose.y)
         half = reach / self.resolution
         rows, columns = self.blocked.shape
         top, left = max(int(row - half), 0), max(int(column - half), 0)
         bottom, right = min(int(row + half) + 2, rows), min(int(column + half) + 2, columns)
         blocked = self.blocked[top : max(bottom, top + 1), left : max(right, left + 1)]
-        return Surroundings(self.grid, blocked, (top, left))
+        return blocked, (top, left)
+
+    def surroundings(self, pose: Pose2D, reach: float) -> "Surroundings":
+        """The blocked cells within ``reach`` metres of ``pose``, to look for contact in."""
+        return Surroundings(self.grid, *self.window(pose, reach))
 
 
 def covering(footprint: Footprint) -> Floats:

@@ -95,32 +95,12 @@ class PurePursuit(PathController):
             off = wrap_angle(math.atan2(y - pose.y, x - pose.x) - pose.theta)
             distance = max(math.dist(pose[:2], (x, y)), 1e-3)
             curvature = 2.0 * math.sin(off) / distance
-            free = self._free_length(pose, curvature, min(reach, 4.0), around)
+            free = self.free_length(pose, curvature, min(reach, 4.0), around)
             if best is None or free > best[2]:
                 best = off, curvature, free
             if free >= distance or lookahead <= self.settings.lookahead_low:
                 return best if free < distance else (off, curvature, free)
             lookahead = max(0.7 * lookahead, self.settings.lookahead_low)
-
-    def _free_length(
-        self, pose: Pose2D, curvature: float, reach: float, around: Surroundings
-    ) -> float:
-        """Metres along an arc up to the first contact, at most ``reach`` and two thirds of a turn."""
-        if abs(curvature) > 1e-6:
-            reach = min(reach, 4.0 / abs(curvature))
-        steps = np.arange(0.0, reach + 0.05, 0.05)
-        half = 0.5 * curvature * steps
-        chord = steps * np.sinc(half / np.pi)
-        poses = np.column_stack(
-            [
-                pose.x + chord * np.cos(pose.theta + half),
-                pose.y + chord * np.sin(pose.theta + half),
-                pose.theta + 2.0 * half,
-            ]
-        )
-        gaps = around.gaps(poses, self.discs)
-        touching = np.flatnonzero(gaps < min(0.0, float(gaps[0]) - 1e-6))
-        return float(steps[max(touching[0] - 1, 0)]) if len(touching) else reach
 
     def _regulated(self, pose: Pose2D, curvature: float, around: Surroundings) -> dict[str, float]:
         """The speeds (m/s) that curvature and proximity leave, by cause."""
