@@ -293,12 +293,41 @@ def test_orca_passes_a_walker_who_crosses_without_a_stop(x):
     assert np.array_equal(episode.trajectory.poses, again.trajectory.poses)
 
 
+def test_orca_plans_through_people():
+    pytest.importorskip("pyrvo", reason="pip install '.[crowdnav]'")
+    walker = Mover(0.3, np.array([0.0, 8.0]), np.array([[6.0, 3.0], [3.0, 3.0]]))
+    gap = room(8.0, 6.0, (3.6, 0.0, 4.0, 2.5), (3.6, 3.5, 4.0, 6.0))
+    for controller, lost in (("pure_pursuit", True), ("orca", False)):
+        episode, _ = driven(mission(known=gap, movers=(walker,), time_limit=6.0), controller)
+        assert ("waiting" in episode.states) == lost
+
+
+def test_orca_avoids_a_walker_where_there_is_no_path():
+    pytest.importorskip("pyrvo", reason="pip install '.[crowdnav]'")
+    walker = Mover(0.3, np.array([0.0, 6.0]), np.array([[1.5, 5.5], [1.5, 0.5]]))
+    closed = room(8.0, 6.0, (3.6, 0.0, 4.0, 6.0))
+    episode, found = driven(mission(known=closed, movers=(walker,), time_limit=6.0), "orca")
+    assert (found.outcome, found.contacts_moving, found.contacts_resting) == ("timeout", 0, 0)
+    assert len(episode.plans) == 0
+
+
+def test_orca_turns_on_the_spot_where_its_velocity_lies_far_aside():
+    pytest.importorskip("pyrvo", reason="pip install '.[crowdnav]'")
+    episode, found = driven(mission(goals=(Goal(2.5, 5.0),)), "orca")  # 63 degrees to the left
+    assert found.outcome == "arrived"
+    turning = episode.trajectory.poses[:, 2] < math.radians(15.0)
+    assert np.abs(episode.trajectory.twists[turning, 0]).max() < 1e-6
+
+
 def test_walls_of_orca_lie_to_the_left_of_their_outlines_and_leave_out_people():
     orca = pytest.importorskip("dynastar.bench.controllers.orca", reason="needs pyrvo")
-    known = room(8.0, 6.0, (3.6, 0.0, 4.0, 4.0), (2.0, 4.9, 2.1, 5.0))
+    known = room(8.0, 6.0, (3.6, 0.0, 4.0, 4.0))
     controller = orca.Orca(known, ROUND, NavigatorConfig())
+    row, column = controller.costmap.grid.world_to_cell(2.05, 4.95)
+    controller.costmap.blocked[row - 1 : row + 2, column - 1 : column + 2] = True
     person = MovingObstacle(2.05, 4.95, 0.0, 0.0, 0.2)
-    for people, count in (([], 3), ([person], 2)):
+    at_the_wall = MovingObstacle(3.8, 4.0, 0.0, 0.0, 0.2)
+    for people, count in (([], 3), ([person, at_the_wall], 2)):
         blocked, corner = controller._static(Pose2D(2.0, 3.0), 9.0, people)
         outlines = controller._outlines(blocked, corner)
         areas = [shoelace(outline) for outline in outlines]

@@ -71,6 +71,10 @@ class PathController(ABC):
     def follow(self, state: RobotState) -> Twist | None:
         """The twist wanted along ``self.route.path``; None where there is no way on for now."""
 
+    def without_path(self, state: RobotState) -> Twist:
+        """The twist while there is no path."""
+        return REST
+
     def command(self, state: RobotState, scan: LaserScan | None) -> Twist:
         """The twist to drive from now on."""
         self.status = replace(self.status, limited_by="")
@@ -105,7 +109,7 @@ class PathController(ABC):
                 self._say("arrived", "the goal is reached")
             return REST
         if not self._plan(state):
-            return REST
+            return self.without_path(state)
         if state.stamp < self._backing_until:
             return self._back_up(state)
         wanted = self.follow(state)

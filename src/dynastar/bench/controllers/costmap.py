@@ -26,7 +26,7 @@ class Costmap:
     """Cells that are blocked: by the map, or because a beam ended there and none has passed since.
 
     Everything seen counts as static, as in the costmaps of Nav2 [Macenski2020]: who walks away is
-    cleared by the next beams through there.
+    cleared by the next beams through there. ``mapped`` are the cells that the map blocks.
     """
 
     def __init__(self, grid: OccupancyGrid, unknown: Unknown) -> None:
@@ -36,9 +36,9 @@ class Costmap:
         self.factor = factor  # cells to the side of a cell of the map
         self.grid = grid.refined(factor)
         self.resolution = self.grid.resolution
-        self._static = self.grid.blocked(unknown)
-        self._hits = np.zeros(self._static.shape, bool)
-        self.blocked: Mask = self._static.copy()
+        self.mapped: Mask = self.grid.blocked(unknown)
+        self._hits = np.zeros(self.mapped.shape, bool)
+        self.blocked: Mask = self.mapped.copy()
 
     def see(self, pose: Pose2D, scan: LaserScan) -> tuple[int, int, Mask] | None:
         """Takes in a scan from the robot at ``pose``.
@@ -68,16 +68,21 @@ class Costmap:
         cells = np.floor(ends).astype(int) - low
         cells = cells[((cells >= 0) & (cells < high - low)).all(axis=1)]
         hits[cells[:, 0], cells[:, 1]] = True
-        now = hits | self._static[part]
+        now = hits | self.mapped[part]
         if np.array_equal(now, self.blocked[part]):
             return None
         self.blocked[part] = now
         return int(low[0]), int(low[1]), now
 
+    def keep(self, corner: tuple[int, int], cells: Mask) -> None:
+        """Leaves out of the next ``see`` what was seen in a window but not in its ``cells``."""
+        (top, left), (rows, columns) = corner, cells.shape
+        self._hits[top : top + rows, left : left + columns] &= cells
+
     def forget(self) -> None:
         """Back to the map alone."""
         self._hits[:] = False
-        self.blocked = self._static.copy()
+        self.blocked = self.mapped.copy()
 
     def _swept(self, sensor: Pose2D, angles: Floats, clear: Floats) -> Floats:
         """The polygon, in (row, column), between beams as far as the shorter of two neighbours."""

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 import pyrvo
 
-from dynastar.bench.controllers.base import PathController
-from dynastar.bench.controllers.costmap import Surroundings
+from dynastar.bench.controllers.base import REST, PathController
+from dynastar.bench.controllers.costmap import REACH, Surroundings
 from dynastar.geometry import Pose2D, Twist, compose, wrap_angle
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import RobotState
@@ -37,6 +37,7 @@ class Settings(NamedTuple):
     cleared: float = 0.15  # m round a person, within which blocked cells belong to the person
     braking: float = 0.7  # fraction of the robot's braking that it counts on
     least: float = 0.02  # m/s, below which it stands
+    rotate_from: float = 0.785  # rad off the velocity, from which it turns on the spot
 
 
 class Orca(PathController):
@@ -44,9 +45,10 @@ class Orca(PathController):
 
     The preferred velocity points to a place ahead on the path of ``PathController``, at full speed,
     slower near the goal. People are the moving obstacles that the project's tracker finds in the
-    scans. Static obstacles are the outlines of the costmap's other blocked cells. The robot turns to
-    the velocity, drives at the part of it that lies ahead, and no faster than it can stop for static
-    obstacles on that arc.
+    scans. Static obstacles are the outlines of the costmap's other blocked cells, and the path is
+    planned without people, too. Where there is no path, the preferred velocity is 0. The robot turns
+    to the velocity, drives at the part of it that lies ahead, and no faster than it can stop for
+    static obstacles on that arc. Far off the velocity it turns on the spot.
 
     In print everybody does half of the avoiding. People of the suites do not do theirs, so ORCA is
     solved again from its own result: after ``rounds`` the robot does nearly all. Of four variants
@@ -55,9 +57,6 @@ class Orca(PathController):
     round, 5 s and 0.05 m in 59, which may be chance. The other two were run on ``crowdnav`` alone. The
     static margin of 0.05 m and the pose ahead by the latency came later, without such a comparison;
     the latter after contacts in the quick worlds of ``barn``.
-
-    Known to hold it back: the path takes people for static, and without a path the robot brakes and
-    ORCA is not asked; and while it turns, the part of the velocity ahead may lead towards somebody.
     """
 
     settings = Settings()
@@ -79,7 +78,15 @@ class Orca(PathController):
         errors = self.config.range_error, self.config.heading_error
         sensor = compose(pose, scan.mount)
         view = placed(scan, sensor, errors, self.config.local_map.narrowest)
-        self.tracker.update(view, self._known)
+        _, left = self.tracker.update(view, self._known)
+        before = [MovingObstacle(x, y, 0.0, 0.0, radius) for x, y, radius in left]
+        blocked, corner = self._static(pose, REACH, self._people(scan.stamp) + before)
+        self.route.mark((*corner, blocked))
+        self.costmap.keep(corner, blocked)  # hidden behind them, their trace would stay
+
+    def without_path(self, state: RobotState) -> Twist:
+        """The twist out of people's way."""
+        return self.follow(state) or REST
 
     def follow(self, state: RobotState) -> Twist | None:
         """The twist towards ORCA's velocity; None where it is to stand."""
@@ -95,9 +102,9 @@ class Orca(PathController):
             return None
         around = Surroundings(self.costmap.grid, blocked, corner)
         off = wrap_angle(math.atan2(vy, vx) - pose.theta)
-        v = speed * math.cos(off)
-        if v < options.least:
+        if abs(off) > options.rotate_from:
             return self.turned(pose, off, around)
+        v = speed * math.cos(off)
         curvature = self.turning(off) / v
         late = max(state.twist.v, 0.0) * self.config.period
         room = self.free_length(pose, curvature, reach, around) - late - 0.02
@@ -118,14 +125,16 @@ class Orca(PathController):
     def _static(
         self, pose: Pose2D, reach: float, people: list[MovingObstacle]
     ) -> tuple[Mask, Cell]:
-        """The blocked cells near ``pose`` but for those of people, and the first row and column."""
+        """The blocked cells near ``pose``, people off the map left out, and the first of them."""
         window, (top, left) = self.costmap.window(pose, reach)
         blocked = window.astype(np.uint8)
         for person in people:
             row, column = self.costmap.grid.frame.to_grid(person.x, person.y)
             radius = (person.radius + self.settings.cleared) / self.costmap.resolution
             cv2.circle(blocked, (int(column) - left, int(row) - top), int(radius), 0, -1)
-        return blocked.view(bool), (top, left)
+        rows, columns = blocked.shape
+        mapped = self.costmap.mapped[top : top + rows, left : left + columns]
+        return blocked.view(bool) | mapped, (top, left)
 
     def _outlines(self, blocked: Mask, corner: Cell) -> list[Floats]:
         """The outlines (k, 2) of blocked cells, metres; what is blocked lies to their left."""
@@ -167,9 +176,10 @@ class Orca(PathController):
         return velocity
 
     def _preferred(self, pose: Pose2D) -> tuple[float, float]:
-        """The velocity (m/s) to the place ahead on the path, slow enough to stop at its end."""
+        """The velocity (m/s) to a place ahead on the path, slow enough to stop at its end."""
         path, limits, options = self.route.path, self.robot.limits, self.settings
-        assert path is not None
+        if path is None:
+            return 0.0, 0.0
         left = path.length - self.route.s
         stopping = math.sqrt(2.0 * options.braking * limits.v_brake * left)
         speed = min(max(stopping, 0.05), limits.v_max)
