@@ -31,8 +31,8 @@ TABLES = {  # of the paper's page, by part
     "table1": tuple(
         f"table1-{name}" for name in ("own", "kinds", "cells", "length", "time", "512")
     ),
-    "table3": ("table3-own", "table3", "table3-presets"),
-    "clutter": ("clutter",),
+    "table3": ("table3-own", "table3", "table3-presets", "table3-driving"),
+    "clutter": ("clutter", "walker"),
     "ladder": ("ladder",),
     "ablation": ("terms", "ablation-paper", "ablation-people"),
 }

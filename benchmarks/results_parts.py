@@ -99,9 +99,9 @@ def parts() -> list[Part]:
         bench("random", 5, "--missions", "200"),
         bench("physics", 6),
         bench("robots", 8),
-        paper("clutter", 12),
+        paper("clutter", 25),
         Part("scoreboard", 20, ("benchmarks/scoreboard.py",)),
-        paper("table3", 41),
+        paper("table3", 58),
         paper("ladder", 50),
         paper("ablation", 100),
     ]

@@ -44,6 +44,7 @@ MODULES = {
         "angular_acceleration",
         "omega_changes",
         "circles",
+        "turning_angle",
     ),
 }
 

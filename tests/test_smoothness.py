@@ -13,6 +13,7 @@ from dynastar.smoothness import (
     jerk,
     omega_changes,
     smoothness,
+    turning_angle,
 )
 
 
@@ -110,6 +111,12 @@ def test_circles(way: float, turn: float, radius: float, count: int):
     assert circles(round_) == count
 
 
+def test_the_turning_angle_counts_both_ways():
+    t = ticks(40.0)
+    found = turning_angle(driven(0.1, 1.5 * np.sign(np.sin(math.tau * t / 4.0))))
+    assert found == pytest.approx(1.5 * 40.0, rel=0.05)
+
+
 def test_to_and_fro_is_no_circle():
     t = ticks(40.0)
     assert circles(driven(0.1, 1.5 * np.sign(np.sin(math.tau * t / 4.0)))) == 0
@@ -119,4 +126,4 @@ def test_what_did_not_drive_has_no_numbers():
     for found in (STILL, NOTHING):
         assert smoothness(found) is jerk(found) is None
         assert angular_acceleration(found) is omega_changes(found) is None
-        assert circles(found) == 0
+        assert circles(found) == turning_angle(found) == 0

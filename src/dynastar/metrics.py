@@ -33,7 +33,7 @@ class Metrics(NamedTuple):
     ``nearest`` (m) is the smallest gap between the footprint and a moving obstacle, 0 at contact, and
     ``within_0_2`` and ``within_0_45`` are the fractions of the time with such a gap under 0.2 m and 0.45
     m. ``smoothness`` ((rad/s)/m), ``jerk`` (m/s3), ``angular_acceleration`` (rad/s2), ``omega_changes``
-    (1/m) and ``circles`` are defined in ``dynastar.smoothness``.
+    (1/m), ``circles`` and ``turning_angle`` (rad) are defined in ``dynastar.smoothness``.
     """
 
     outcome: str
@@ -60,6 +60,7 @@ class Metrics(NamedTuple):
     angular_acceleration: float | None
     omega_changes: float | None
     circles: int
+    turning_angle: float
 
     def to_csv(self, path: str | Path) -> None:
         """Write the numbers to a CSV file: a line of names and one of values."""
@@ -114,6 +115,7 @@ def measure(episode: Episode) -> Metrics:
         angular_acceleration=smoothness.angular_acceleration(driven),
         omega_changes=smoothness.omega_changes(driven),
         circles=smoothness.circles(driven),
+        turning_angle=smoothness.turning_angle(driven),
     )
 
 

@@ -1,4 +1,4 @@
-"""Trajectory -> how evenly it was driven: jerk, angular acceleration, swings and circles."""
+"""Trajectory -> how evenly it was driven: turning, jerk, angular acceleration, swings, circles."""
 
 import math
 
@@ -24,6 +24,11 @@ def smoothness(driven: Trajectory) -> float | None:
     length = _length(driven)
     variation = float(np.abs(np.diff(driven.twists[:, 1])).sum())
     return variation / length if length > 0.0 else None
+
+
+def turning_angle(driven: Trajectory) -> float:
+    """All that the heading has turned, either way, in rad: ``sum |theta_{i+1} - theta_i|``."""
+    return float(np.abs(np.diff(np.unwrap(driven.poses[:, 2]))).sum())
 
 
 def jerk(driven: Trajectory) -> float | None:

@@ -12,6 +12,7 @@ from dynastar.bench.missions import Mission, Options
 from dynastar.bench.selection import choose_missions
 from dynastar.bench.suites import people
 from dynastar.bench.tables import as_text
+from dynastar.bench.unplanned import Unplanned
 from dynastar.navigator import PRESETS, configured
 from dynastar.planning import HeuristicConfig, SearchGrid
 
@@ -68,7 +69,11 @@ def test_each_arm_differs_from_the_default_as_it_says():
     for preset in PRESETS:
         assert settings(preset) == PRESETS[preset]
     others = {arm: ARMS[arm].controller for arm in ARMS if ARMS[arm].controller is not None}
-    assert others == {"printed": Printed, "path following alone": Follower}
+    assert others == {
+        "printed": Printed,
+        "path following alone": Follower,
+        "DWA alone": Unplanned,
+    }
     for arm in (arm for arm in ARMS if arm.startswith("Eq. 2: ")):
         assert settings(arm)._replace(planner=DEFAULT.planner) == DEFAULT
         assert changed(settings(arm), settings(ARMS[arm].base)) <= {

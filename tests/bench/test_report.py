@@ -47,7 +47,7 @@ def test_the_json_of_table3_has_its_tables_in_markdown(tmp_path, capsys):
     assert {"arrived", "contacts_moving"} <= set(found)
     for ratio in ("length_ratio", "turning_ratio"):
         assert set(found[ratio]) == {"median", "p95", "worst"}
-    assert set(result["tables"]) == {"table3-own", "table3", "table3-presets"}
+    assert set(result["tables"]) == {"table3-own", "table3", "table3-presets", "table3-driving"}
     assert result["tables"]["table3"].startswith("**Table III over 2 worlds**")
     assert "| hybrid, length m |" in result["tables"]["table3"]
 

@@ -103,6 +103,9 @@ def test_other_controllers_drive_in_the_same_missions(suites, monkeypatch, tmp_p
     lines = as_text(table(result)).splitlines()
     line = next(line for line in lines if "by pure_pursuit" in line)
     assert line.split()[2:8] == ["6", "0", "0-39", "1", "0", "6"]
+    fewer = scoreboard.run_all(Options(), others=("pure_pursuit",), every=2)
+    assert fewer["others"]["pure_pursuit"]["first"]["missions"] == 3
+    assert fewer["suites"] == result["suites"]
     save(scoreboard.picture(result), tmp_path / "all.png")
 
 

@@ -6,9 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynastar.bench import arms, paper, table3
+from dynastar.bench import arms, paper, table3, table3_tables
 from dynastar.bench.controllers.printed import Printed
 from dynastar.bench.tables import as_markdown, as_text
+from dynastar.bench.unplanned import Unplanned
+from dynastar.geometry import Goal
 from dynastar.grid import OccupancyGrid
 from dynastar.planning import plan
 
@@ -19,8 +21,11 @@ def row(number, length, turns, grid_length=30.0, grid_turns=8, **more):
     end = {"outcome": "arrived", "reason": "", "contacts_moving": 0, "contacts_resting": 0}
     driven = {"length": length, "turning_points": turns, "time": 2.0 * length}
     way = {"grid_length": grid_length, "grid_turning_points": grid_turns}
+    way |= {"smoothed_length": grid_length - 2.0, "smoothed_turning_points": grid_turns - 3}
     free = {"grid_free": False, "grid_free_disc": False}
-    return {"number": number, **end, **driven, **way, **free, **more}
+    even = {"turning_angle": 7.0, "smoothness": 0.5, "jerk": 0.3}
+    even |= {"min_clearance": 0.2, "mean_speed": 0.4}
+    return {"number": number, **end, **driven, **way, **free, **even, **more}
 
 
 ROWS = [
@@ -29,7 +34,8 @@ ROWS = [
     row(3, 10.0, 1, outcome="contact", contacts_moving=1, grid_free=True, grid_free_disc=True),
     row(5, 12.0, 1, outcome="timeout"),
     {"number": 6, "outcome": "error", "reason": "E: x", "grid_length": 30.0}
-    | {"grid_turning_points": 9, "grid_free": False, "grid_free_disc": False},
+    | {"grid_turning_points": 9, "grid_free": False, "grid_free_disc": False}
+    | {"smoothed_length": 28.0, "smoothed_turning_points": 6},
 ]
 
 
@@ -81,13 +87,13 @@ def test_ratios_are_over_all_worlds_and_what_did_not_arrive_is_longer_than_any()
 def test_nothing_arrived_is_no_figure_and_no_error():
     found = table3.summary(ROWS[2:])
     assert found["length_ratio"]["median"] is found["time"]["median"] is None
-    for table in table3.tables({"default": ROWS[2:], "printed": ROWS[2:]}, ROWS[-1]):
+    for table in table3_tables.tables({"default": ROWS[2:], "printed": ROWS[2:]}, ROWS[-1]):
         assert table.title in as_text(table)
 
 
 def test_the_tables_have_the_printed_figures_beside():
     by_preset = {"default": ROWS[:3], "printed": ROWS[2:]}
-    own, many, presets = table3.tables(by_preset, row(None, 28.0, 6, 32.0, 12))
+    own, many, presets, driving = table3_tables.tables(by_preset, row(None, 28.0, 6, 32.0, 12))
     assert [cells[0] for cells in presets.cells] == ["", "default", "printed", "in print"]
     assert presets.cells[1][1:3] == ["3", "2"]
     assert presets.cells[1][7:] == ["1.100", "2.000", "66.0"]
@@ -99,7 +105,12 @@ def test_the_tables_have_the_printed_figures_beside():
         ["hybrid / improved A*", "0.88", "0.50", "0.88", "0.57"],
     ]
     assert tuple(many.cells[0][1:-1]) == FIVE
-    assert many.cells[2] == [
+    assert driving.cells[1:] == [
+        ["default", "2", "7.0", "0.50", "0.30", "0.20", "0.40"],
+        ["printed", "0", "", "", "", "", ""],
+    ]
+    assert many.cells[2] == ["smoothed, length m", *3 * ["28.00"], *2 * ["28.00"], ""]
+    assert many.cells[3] == [
         "hybrid, length m",
         "33.00",
         "27.00",
@@ -108,7 +119,7 @@ def test_the_tables_have_the_printed_figures_beside():
         "",
         "29.00",
     ]
-    assert many.cells[6][0] == "turns, hybrid / improved A*"
+    assert many.cells[8][0] == "turns, hybrid / improved A*"
     assert "2 of 3 arrived, 1 touched" in many.notes
     assert "1 worlds as a point" in many.notes
     assert "| hybrid | 28.0 | 6 | 29 | 4 |" in as_markdown(own)
@@ -128,10 +139,21 @@ def test_rows_are_made_once_and_an_error_is_one(tmp_path, monkeypatch):
     assert all(row["grid_length"] > 26.0 for row in rows)
     assert table3.run(4, 0, tmp_path / "out")[:3] == rows
     assert [name for name, *_ in flown] == ["paper 0", "paper 2", "paper 4", "paper 5"]
-    table3.run(1, 0, tmp_path / "out", arm="paper")
+    table3.run(1, 0, tmp_path / "out", driver="paper")
     assert flown[-1] == ("paper 0", "paper", 0, None)
-    table3.run(1, 0, tmp_path / "out", arm="printed")
+    table3.run(1, 0, tmp_path / "out", driver="printed")
     assert flown[-1] == ("paper 0", "default", 0, Printed)
+    table3.run(1, 0, tmp_path / "out", driver="alone")
+    assert flown[-1] == ("paper 0", "default", 0, Unplanned)
+
+
+def test_the_window_alone_follows_the_straight_line_and_avoids_what_is_on_it():
+    block = empty((3, 3), size=8)
+    made = replace(block, goals=(Goal(7.5, 7.5),), time_limit=60.0)
+    driven = arms.run_mission(made, arms.ARMS["DWA alone"])
+    assert driven["outcome"] == "arrived"
+    assert 8.5 < driven["length"] < 11.0
+    assert driven["replans"] == 0
 
 
 def test_the_hybrid_is_driven_as_the_suite_drives_it():

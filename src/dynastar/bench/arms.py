@@ -8,6 +8,7 @@ from dynastar.bench.controllers.printed import Printed
 from dynastar.bench.follower import Follower
 from dynastar.bench.missions import row_of
 from dynastar.bench.settings import merged
+from dynastar.bench.unplanned import Unplanned
 from dynastar.metrics import measure
 from dynastar.navigator import Preset
 from dynastar.planning import HeuristicConfig
@@ -15,11 +16,13 @@ from dynastar.simulation import Controller, Scenario
 from dynastar.simulation import run as drive
 
 # The modules of bench that the rows of an arm in the suite paper depend on.
-SOURCES = ("arms", "follower", "paper", "own_maps", "settings", "controllers/printed",
+SOURCES = ("arms", "follower", "unplanned", "paper", "own_maps", "settings", "controllers/printed",
            "controllers/base", "controllers/costmap", "controllers/route")  # fmt: skip
 
 ALL_TERMS = HeuristicConfig()
 PLAIN = HeuristicConfig(exponential=False, parent=False, k=0.0, weight=1.0)
+
+PLAIN_ASTAR = "Eq. 2: none of them (octile A*)"
 
 # Eq. 2 with one of its terms left out or read differently: planner and terms, on one kernel.
 TERMS: dict[str, tuple[str, HeuristicConfig]] = {
@@ -30,9 +33,8 @@ TERMS: dict[str, tuple[str, HeuristicConfig]] = {
     "Eq. 2: P / Q around n": ("improved", ALL_TERMS._replace(q="ratio")),
     "Eq. 2: no h(p)": ("improved", ALL_TERMS._replace(parent=False)),
     "Eq. 2: no e^(P/Q)": ("improved", ALL_TERMS._replace(exponential=False)),
-    "Eq. 2: none of them (octile A*)": ("weighted", PLAIN),
+    PLAIN_ASTAR: ("weighted", PLAIN),
 }
-
 
 BASE_TERMS = "Eq. 2: all terms"  # what the default has
 BASE = "default"
@@ -108,4 +110,5 @@ ARMS: dict[str, Arm] = {
     "period 0.05 s": _navigator(period=0.05),
     "period 0.2 s": _navigator(period=0.2),
     "path following alone": Arm(controller=Follower),
+    "DWA alone": Arm(controller=Unplanned),
 }

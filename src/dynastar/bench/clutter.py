@@ -1,11 +1,11 @@
-"""The controller ``printed`` over clutter: arrivals and contacts by how much of the map is occupied."""
+"""Arrivals and contacts by how much of the map is occupied, and by how fast the walker is."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import count, islice
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from dynastar.bench import paper
 from dynastar.bench.arms import SOURCES, Arm, run_mission
@@ -14,71 +14,105 @@ from dynastar.bench.pairs import interval_in_words, totals
 from dynastar.bench.rows import collect
 from dynastar.bench.tables import Cell, Table
 from dynastar.bench.versions import version
-from dynastar.simulation import Scenario
+from dynastar.simulation import Mover, Scenario
 
-WORLDS = 50  # for each line of the table, unless another number is asked for
-OCCUPIED = (0.0, 0.05, 0.1, paper.OCCUPIED)
-READINGS = {
-    "as printed": Arm(controller=Printed),
-    "replanning, target at 1 m": Arm(controller=PrintedReplanning),
+WORLDS = 50  # for each line of the tables, unless another number is asked for
+OCCUPIED = (0.0, 0.05, 0.1, paper.OCCUPIED, 0.3)
+SPEEDS = (0.25, paper.MOVER_SPEED, 1.0, 1.5)  # m/s
+DRIVERS = {
+    "printed": Arm(controller=Printed),
+    "printed, replanning, target at 1 m": Arm(controller=PrintedReplanning),
+    "default": Arm(),
 }
 
 Row = dict[str, Any]
 
 
+class Kind(NamedTuple):
+    """What is driven in a kind of world: the fraction of occupied cells, the walker's speed (m/s)."""
+
+    occupied: float
+    speed: float
+    driver: str
+
+
+BY_DENSITY = [Kind(occupied, paper.MOVER_SPEED, name) for occupied in OCCUPIED for name in DRIVERS]
+BY_SPEED = [Kind(paper.OCCUPIED, speed, "default") for speed in SPEEDS]
+
+
 def run(
     worlds: int, seed: int, folder: Path, workers: int = 1, progress: bool = False
 ) -> list[Row]:
-    """A row for both readings in each of the first worlds of every density that have a way.
+    """A row for each kind in each of the first worlds of its density that have a way.
 
     They are kept in ``folder`` and gone on with from there, by the same version.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    jobs = [
-        (occupied, number, reading)
-        for occupied in OCCUPIED
-        for number in _numbers(occupied, worlds, seed)
-        for reading in READINGS
-    ]
+    kinds = list(dict.fromkeys([*BY_DENSITY, *BY_SPEED]))
+    numbers = {occupied: _numbers(occupied, worlds, seed) for occupied in OCCUPIED}
+    jobs = [(*kind, number) for kind in kinds for number in numbers[kind.occupied]]
     run_of = {"table": "clutter", "seed": seed, "version": version("clutter", *SOURCES)}
     work = partial(_row, seed=seed)
     return collect("clutter", work, jobs, folder / "clutter.jsonl", run_of, workers, progress)
 
 
 def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
-    """For each density and reading, the totals of its missions (``pairs.totals``)."""
-    found: dict[tuple[float, str], dict[int, Row]] = {}
+    """For each kind, the totals of its missions (``pairs.totals``)."""
+    found: dict[Kind, dict[int, Row]] = {}
     for row in rows:
-        found.setdefault((row["occupied"], row["reading"]), {})[row["number"]] = row
+        kind = Kind(*(row[what] for what in Kind._fields))
+        found.setdefault(kind, {})[row["number"]] = row
+    return [{**kind._asdict(), **totals(of)} for kind, of in found.items()]
+
+
+def tables(rows: Sequence[Row]) -> list[Table]:
+    """A line for each density and what drives there; one for each speed of the walker."""
+    here = f"The suite's own are {100.0 * paper.OCCUPIED:.0f} % and {paper.MOVER_SPEED:g} m/s."
+    notes = f"Worlds of the suite paper. {here} Intervals are Wilson's."
     return [
-        {"occupied": occupied, "reading": reading, **totals(of)}
-        for (occupied, reading), of in found.items()
+        _table(
+            "clutter",
+            "Over clutter",
+            [of for of in summary(rows) if of["speed"] == paper.MOVER_SPEED],
+            lambda of: f"{100.0 * of['occupied']:.0f} % occupied",
+            f"{notes} Without occupied cells all worlds are one.",
+        ),
+        _table(
+            "walker",
+            "Over the walker's speed",
+            [
+                of
+                for of in summary(rows)
+                if of["occupied"] == paper.OCCUPIED and of["driver"] == "default"
+            ],
+            lambda of: f"{of['speed']:g} m/s",
+            notes,
+        ),
     ]
 
 
-def table(rows: Sequence[Row]) -> Table:
-    """A line for each density and reading."""
+def _table(
+    name: str,
+    title: str,
+    found: Sequence[dict[str, Any]],
+    label: Callable[[dict[str, Any]], str],
+    notes: str,
+) -> Table:
     lines: list[tuple[Cell, ...]] = []
-    for of in summary(rows):
+    for of in sorted(found, key=lambda of: (of["occupied"], of["speed"])):
         counts = (
             (of[what], interval_in_words(of[f"{what}_interval"], 100.0, ".0f"))
             for what in ("arrived", "contacts_moving", "contacts_resting")
         )
-        lines.append(
-            (
-                f"{100.0 * of['occupied']:.0f} % occupied",
-                of["reading"],
-                of["missions"],
-                *(cell for pair in counts for cell in pair),
-                of["timeouts"] + of["blocked"] + of["errors"],
-            )
-        )
+        late = of["timeouts"] + of["blocked"] + of["errors"]
+        pairs = (cell for pair in counts for cell in pair)
+        lines.append((label(of), of["driver"], of["missions"], *pairs, late, of["mean_time"]))
     return Table(
-        "clutter",
-        "The controller printed over clutter",
+        name,
+        title,
         (
             ("", ""),
-            ("reading", "<"),
+            ("drives", "<"),
             ("worlds", "d"),
             ("arrived", "d"),
             ("95 %, %", ""),
@@ -87,12 +121,18 @@ def table(rows: Sequence[Row]) -> Table:
             ("at rest", "d"),
             ("95 %, %", ""),
             ("late, blocked", "d"),
+            ("mean s", ".1f"),
         ),
         lines,
-        "Worlds of the suite paper with so many of the map's cells occupied, the suite's own at "
-        f"{100.0 * paper.OCCUPIED:.0f} %. Without occupied cells all of them are one world. Intervals "
-        "are Wilson's.",
+        notes,
     )
+
+
+def with_speed(scenario: Scenario, speed: float) -> Scenario:
+    """The scenario with walkers who walk their ways at ``speed`` (m/s)."""
+    slower = paper.MOVER_SPEED / speed
+    movers = (Mover(m.radius, slower * m.times, m.points, m.after) for m in scenario.movers)
+    return replace(scenario, movers=tuple(movers))
 
 
 def _numbers(occupied: float, worlds: int, seed: int) -> list[int]:
@@ -101,9 +141,10 @@ def _numbers(occupied: float, worlds: int, seed: int) -> list[int]:
     return list(islice(kept, worlds if occupied else 1))
 
 
-def _row(job: tuple[float, int, str], seed: int) -> Row:
-    occupied, number, reading = job
-    made = paper.world(seed, number, occupied)
+def _row(job: tuple[float, float, str, int], seed: int) -> Row:
+    occupied, speed, driver, number = job
+    of = Kind(occupied, speed, driver)
+    made = paper.world(seed, number, of.occupied)
     assert isinstance(made, Scenario)
-    driven = run_mission(replace(made, seed=seed), READINGS[reading])
-    return {"occupied": occupied, "number": number, "reading": reading, **driven}
+    driven = run_mission(replace(with_speed(made, of.speed), seed=seed), DRIVERS[of.driver])
+    return {**of._asdict(), "number": number, **driven}

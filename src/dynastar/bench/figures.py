@@ -19,6 +19,7 @@ from dynastar.robot import ROBOTS
 from dynastar.simulation import run
 from dynastar.terminal import progress_bar
 from dynastar.viewer import schematics
+from dynastar.viewer.commands import draw_commands
 from dynastar.viewer.panels import Searched, draw_driven, draw_searches, draw_unaware
 from dynastar.viewer.sheet import save
 
@@ -102,6 +103,13 @@ def driven() -> "Figure":
     return draw_driven(own_mission())
 
 
+def speeds() -> "Figure":
+    """The speeds of that mission over time, beside those that it was told."""
+    mission = own_mission()
+    told, true = mission.commands, mission.trajectory.twists
+    return draw_commands(mission.trajectory.times, {"commanded": told, "driven": true})
+
+
 @cache
 def own_mission() -> Episode:
     """The mission of Fig. 7, driven once in a process."""
@@ -116,4 +124,5 @@ FIGURES: "dict[str, Callable[[], Figure]]" = {
     "fig6": unaware,
     "fig7": driven,
     "fig8": schematics.draw_system,
+    "speeds": speeds,
 }

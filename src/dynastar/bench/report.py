@@ -13,6 +13,7 @@ from dynastar.bench import (
     table1,
     table1_tables,
     table3,
+    table3_tables,
     targets,
     terms,
 )
@@ -100,19 +101,23 @@ def report_table1(asked: Asked) -> Report:
 
 
 def report_table3(asked: Asked) -> Report:
-    """Table III: in the own world, and over many by each preset; over a tenth by ``printed``."""
+    """Table III: in the own world, and over many by all that drive there."""
     seed, folder, workers, progress, settings = asked[2:]
-    worlds = {"default": asked.maps, "paper": asked.maps, "printed": -(-asked.maps // 10)}
-    by_arm = {
-        arm: table3.run(count, seed, folder, workers, progress, arm, settings)
-        for arm, count in worlds.items()
+    by_driver = {
+        name: table3.run(
+            -(-asked.maps // of.share), seed, folder, workers, progress, name, settings
+        )
+        for name, of in table3.DRIVERS.items()
     }
-    rows = by_arm["default"]
+    rows = by_driver["default"]
     own = table3.own_row(settings=settings)
     arrived = {
-        arm: [row for row in of if row["outcome"] == "arrived"] for arm, of in by_arm.items()
+        arm: [row for row in of if row["outcome"] == "arrived"] for arm, of in by_driver.items()
     }
-    names = {arm: f"{arm}: {len(arrived[arm])} of {len(of)} arrived" for arm, of in by_arm.items()}
+    names = {
+        arm: f"{table3.DRIVERS[arm].name}: {len(arrived[arm])} of {len(of)} arrived"
+        for arm, of in by_driver.items()
+    }
     alone, hybrid = table3.PRINTED["improved"], table3.PRINTED["hybrid"]
     measures = {
         "length driven / improved A*'s grid path": (table3.length_ratio, hybrid[0] / alone[0]),
@@ -132,11 +137,11 @@ def report_table3(asked: Asked) -> Report:
         "table3",
         {
             "table3": table3.summary(rows),
-            "table3_presets": {name: table3.summary(of) for name, of in by_arm.items()},
+            "table3_presets": {name: table3.summary(of) for name, of in by_driver.items()},
             "table3_own": own,
         },
-        table3.tables(by_arm, own),
-        {f"table3-{name}": of for name, of in by_arm.items()},
+        table3_tables.tables(by_driver, own),
+        {f"table3-{name}": of for name, of in by_driver.items()},
         draw_spreads(spreads) if any(arrived.values()) else None,
     )
 
@@ -197,11 +202,11 @@ def _scaled(interval: Sequence[float] | None, factor: float) -> tuple[float, flo
 
 
 def report_clutter(asked: Asked) -> Report:
-    """The controller ``printed`` over clutter, in two readings."""
+    """The controller ``printed``, in two readings, and the default over clutter and walkers' speeds."""
     seed, folder, workers, progress, _ = asked[2:]
     rows = clutter.run(asked.worlds_or(clutter.WORLDS), seed, folder, workers, progress)
     return Report(
-        "clutter", {"clutter": clutter.summary(rows)}, [clutter.table(rows)], {"clutter": rows}
+        "clutter", {"clutter": clutter.summary(rows)}, clutter.tables(rows), {"clutter": rows}
     )
 
 

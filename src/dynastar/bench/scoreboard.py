@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 COMPETITORS = ("pure_pursuit", "kompass_dwa", "orca", "printed")  # that drive beside the navigator
 QUICK_COMPETITORS = COMPETITORS[:3]  # printed takes longer than all others together
+QUICK_EVERY = 2  # of the quick missions, competitors drive one in so many
 
 Result = Mapping[str, Any]
 Planned = dict[
@@ -32,15 +33,17 @@ def run_all(
     progress: bool = False,
     keep: Path | None = None,
     others: Sequence[str] = (),
+    every: int = 1,
 ) -> dict[str, Any]:
     """Runs every suite whose data and extras are here; ``left_out`` says why another was not.
 
-    The controllers ``others`` drive in the same missions, in each suite that drives. Finished rows are
+    The controllers ``others`` drive in the same missions, or in each ``every``-th of them, in each suite
+    that drives. Finished rows are
     kept in ``keep``, and a run that was cut off goes on from there. Raises InputError if no suite can be
     run.
     """
     began = time.perf_counter()
-    planned, left_out = _planned(options, others)
+    planned, left_out = _planned(options, others, every)
     jobs = _in_turn([jobs for jobs, _ in planned.values()])
     rows, times = run_jobs("all", jobs, options, progress, keep)
     driven: dict[tuple[str, str], list[tuple[dict[str, Any], float]]] = {key: [] for key in planned}
@@ -67,7 +70,7 @@ def run_all(
     }
 
 
-def _planned(options: Options, others: Sequence[str]) -> tuple[Planned, dict[str, str]]:
+def _planned(options: Options, others: Sequence[str], every: int) -> tuple[Planned, dict[str, str]]:
     """The jobs of all suites by all controllers, and why suites and controllers were left out."""
     planned: Planned = {}
     left_out: dict[str, str] = {}
@@ -86,7 +89,9 @@ def _planned(options: Options, others: Sequence[str]) -> tuple[Planned, dict[str
             left_out[controller] = str(error)
             continue
         asked = options._replace(controller=controller)
-        planned |= {(controller, name): jobs_of(name, load_suite(name), asked) for name in driving}
+        for name in driving:
+            jobs, skipped = jobs_of(name, load_suite(name), asked)
+            planned[controller, name] = jobs[::every], skipped
     return planned, left_out
 
 

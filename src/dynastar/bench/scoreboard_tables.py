@@ -65,6 +65,7 @@ def quality_table(result: Result) -> Table:
             ("swings/m", ".2f"),
             ("jerk m/s3", ".2f"),
             ("circles", ".2f"),
+            ("turned rad", ".1f"),
             ("nearest m", ".2f"),
             ("< 0.2 m %", ".1f"),
             ("< 0.45 m %", ".1f"),
@@ -72,8 +73,8 @@ def quality_table(result: Result) -> Table:
         lines,
         "Means over arrivals. rad/s/m: variation of the turning rate per metre. rad/s2: RMS of the angular "
         "acceleration. Swings: sign changes of the turning rate. Jerk: RMS. Circles: turns by 270 degrees "
-        "in a mission. Nearest: the smallest gap to a moving obstacle, and per cent of the time with a gap "
-        "under 0.2 m and 0.45 m.",
+        "in a mission. Turned: all that the heading has turned. Nearest: the smallest gap to a moving "
+        "obstacle, and per cent of the time with a gap under 0.2 m and 0.45 m.",
     )
 
 

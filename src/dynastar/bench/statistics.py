@@ -14,7 +14,7 @@ RESAMPLES = 9_999
 ALPHA, POWER = 0.05, 0.8  # of the sample size for a difference between pairs
 
 QUALITY = (  # of a row, averaged over the missions that arrived
-    *("smoothness", "angular_acceleration", "omega_changes", "jerk", "circles"),
+    *("smoothness", "angular_acceleration", "omega_changes", "jerk", "circles", "turning_angle"),
     *("nearest", "within_0_2", "within_0_45"),
 )
 

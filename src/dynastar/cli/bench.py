@@ -97,7 +97,7 @@ def _add_missions(parser: argparse.ArgumentParser) -> None:
         "--controller",
         metavar="NAME",
         help="navigator (the default), pure_pursuit, printed, kompass_dwa, orca, or MODULE:CLASS; `all` "
-        "runs the first five (--quick: without printed) unless one is named",
+        "runs all of these (--quick: all but printed, in half of the missions) unless one is named",
     )
     add_set(parser)
     parser.add_argument(
@@ -176,7 +176,13 @@ def _run(arguments: argparse.Namespace, options: "Options") -> int:
 
 
 def _run_all(arguments: argparse.Namespace) -> int:
-    from dynastar.bench.scoreboard import COMPETITORS, QUICK_COMPETITORS, picture, run_all
+    from dynastar.bench.scoreboard import (
+        COMPETITORS,
+        QUICK_COMPETITORS,
+        QUICK_EVERY,
+        picture,
+        run_all,
+    )
     from dynastar.bench.scoreboard_tables import quality_table, table
     from dynastar.bench.tables import as_text
     from dynastar.cli.compiling import prepare
@@ -193,7 +199,8 @@ def _run_all(arguments: argparse.Namespace) -> int:
     others: tuple[str, ...] = ()
     if arguments.controller is None:
         others = QUICK_COMPETITORS if arguments.quick else COMPETITORS
-    result = run_all(options, progress=True, keep=keep, others=others)
+    every = QUICK_EVERY if arguments.quick else 1
+    result = run_all(options, progress=True, keep=keep, others=others, every=every)
     _write(result, file, keep)
     save(picture(result), folder / "all.png")
     text = "\n\n".join(map(as_text, (table(result), quality_table(result))))

@@ -24,6 +24,7 @@ UNITS = {
     "jerk": "m/s3",
     "angular_acceleration": "rad/s2",
     "omega_changes": "1/m",
+    "turning_angle": "rad",
     "speed": "m/s",
     "resolution": "m",
     "radius": "m",
