@@ -220,7 +220,8 @@ def judge(track, now, space, fastest):
     """Decide whether a track moves; sets its state, and ``started`` if it begins to.
 
     A track moves once its motion is steady and faster than REST_SPEED beyond doubt, and either it lies
-    in space that was seen free before, or the place where it was first seen is seen free now. It
+    in space that was seen free before, or the place where it was first seen is seen free now. A person
+    known by the legs has moved once farther from the start than a leg alone can be off. It
     has stopped after REST_TIME below that speed.
     """
     speed = math.hypot(track.vx, track.vy)
@@ -237,7 +238,8 @@ def judge(track, now, space, fastest):
         in_view = track.hidden == NEITHER and track.measured > STEADY
         left = in_view and gone > max(track.radius, TYPICAL_RADIUS)
         left = left and seen_free(track.start_x, track.start_y, space, now - MISSED)
-        if now - track.born > STEADY and gone > MARGIN and (entered or left):
+        enough = LEG_ERROR if track.legs else MARGIN
+        if now - track.born > STEADY and gone > enough and (entered or left):
             track.state, track.moved, track.started = CONFIRMED, now, True
 
 
