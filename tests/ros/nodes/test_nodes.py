@@ -23,8 +23,7 @@ BRAKING = 0.3  # s within which braking has to begin
 
 def brakes_after(client, struck: float) -> float:
     """Seconds from a fault to the first of the commands that end in a stop."""
-    client.spin(2.5)
-    assert client.commands[-1][1:] == (0.0, 0.0)
+    assert client.spin(10.0, lambda: client.commands[-1][1:] == (0.0, 0.0))
     recent = [(at, abs(v)) for at, v, _ in client.commands if at > struck - 0.5]
     fastest = max(v for _, v in recent)
     last = max(at for at, v in recent if v > 0.98 * fastest)
