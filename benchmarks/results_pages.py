@@ -166,7 +166,8 @@ def write(root: Path, found: Found, record: Record) -> list[str]:
         for block in blocks:
             document = fill(document, block.name, block.text(found).strip(), file)
         document = fill(document, "measured", header(page, record), file)
-        file.write_text(document, encoding="utf-8")
+        with io.written_aside(file) as aside:
+            aside.write_text(document, encoding="utf-8")
         missing = [name for name in parts_of(page) if name not in found]
         left = f"; missing: {', '.join(missing)}" if missing else ""
         said.append(f"{page}: {len(blocks)} blocks{left}")

@@ -3,65 +3,14 @@ import math
 import numpy as np
 import pytest
 
-from dynastar.geometry import Pose2D, compose
-from dynastar.grid import GridFrame, OccupancyGrid
+from dynastar.geometry import Pose2D
+from dynastar.grid import GridFrame
 from dynastar.perception.detection import Known
-from dynastar.perception.local_map import SEEN_OCCUPIED, LocalMap
-from dynastar.perception.placed_scan import placed
+from dynastar.perception.local_map import SEEN_OCCUPIED
 from dynastar.perception.planning_map import PlanningMap
-from dynastar.perception.tracking import Tracker
 from dynastar.robot import ROBOTS, Lidar
-from dynastar.simulation.legs import Legs
 from dynastar.simulation.lidar import LidarSimulator
-
-ROUND = Lidar(720, math.tau, 0.05, 8.0)
-HERE = Pose2D(0.0, 0.0, 0.0)
-OPEN = OccupancyGrid.from_occupied(np.zeros((40, 40), bool), 1.0, -20.0, -20.0)
-NOTHING_KNOWN = Known(np.zeros((1, 1), bool), GridFrame(1.0))
-PILLAR = (2.0, 0.0, 0.5)  # hides about 2 m at x = 4
-
-
-class Watcher:
-    """A sensor with its own local map and tracker, which looks at discs (x, y, radius)."""
-
-    def __init__(self, lidar=ROUND, bound=0.01, seed=1, polygons=(), known=NOTHING_KNOWN):
-        random = np.random.default_rng(seed)
-        self.lidar = LidarSimulator(lidar, OPEN, polygons, bound, random)
-        self.local_map, self.tracker, self.known = LocalMap(), Tracker(), known
-        self.ever = set()
-
-    def look(self, t, discs, pose=HERE, lidar=None):
-        lidar = lidar or self.lidar
-        scan = lidar.scan(pose, t, np.array(discs, float).reshape(-1, 3))
-        view = placed(scan, compose(pose, scan.mount), (0.02, 0.0), 0.1)
-        self.local_map.follow(pose.x, pose.y)
-        moving, left = self.tracker.update(view, self.known)
-        for disc in left:
-            self.local_map.erase(*disc)
-        self.local_map.see(view, moving)
-        self.local_map.update(t, np.zeros_like(self.local_map.states, bool))
-        for track in self.confirmed:
-            self.ever.add(track.id)
-        return view.points, moving
-
-    def watch(self, discs_at, seconds, pose_at=lambda t: HERE, rate=20.0):
-        for k in range(round(seconds * rate) + 1):
-            _, moving = self.look(k / rate, discs_at(k / rate), pose_at(k / rate))
-        return moving
-
-    @property
-    def confirmed(self):
-        return [t for t in self.tracker.tracks if t.state == "confirmed"]
-
-    def of(self, *states):
-        return [t for t in self.tracker.tracks if t.state in states]
-
-
-def legs_of(*walks):
-    """The discs over time of people who walk from (x, y) on at (vx, vy) and are seen by their legs."""
-    legs, walks = Legs(len(walks)), np.array(walks, float)
-    return lambda t: legs.discs(walks[:, :2] + t * walks[:, 2:])
-
+from watching import OPEN, PILLAR, Watcher
 
 # -- in view ---------------------------------------------------------------------------------------
 
@@ -160,33 +109,6 @@ def test_two_obstacles_that_arrive_side_by_side_are_covered():
     for y in (-0.3, 0.3):
         assert any(math.hypot(m.x - 2.5, m.y - y) < 0.45 for m in watcher.confirmed)
     assert all(m.vx == pytest.approx(-0.5, abs=0.15) for m in watcher.confirmed)
-
-
-@pytest.mark.parametrize(
-    "walk", [(2.0, -3.0, 0.0, 1.2), (-4.0, 1.5, 1.0, 0.0), (6.0, 1.0, -1.4, 0.0)]
-)
-def test_a_person_whose_legs_are_seen_is_one_obstacle_with_the_velocity_of_the_person(walk):
-    watcher = Watcher()
-    watcher.watch(legs_of(walk), 3.0)
-    (track,) = watcher.confirmed
-    place, velocity = np.array(walk[:2]) + 3.0 * np.array(walk[2:]), walk[2:]
-    assert (track.x, track.y) == pytest.approx(tuple(place), abs=0.2)
-    assert (track.vx, track.vy) == pytest.approx(velocity, abs=0.35)
-    assert track.radius == pytest.approx(0.3)
-
-
-def test_two_people_who_pass_each_other_are_two_obstacles_by_their_legs_too():
-    watcher = Watcher()
-    watcher.watch(legs_of((2.0, -3.0, 0.0, 1.2), (3.4, 3.0, 0.0, -1.0)), 4.0)
-    one, other = sorted(watcher.confirmed, key=lambda track: track.vy)
-    assert (one.vy, other.vy) == pytest.approx((-1.0, 1.2), abs=0.35)
-
-
-def test_posts_as_narrow_as_legs_are_no_obstacles_that_move():
-    posts = [(2.0, 0.2 * k - 1.0, 0.05) for k in range(10)]
-    watcher = Watcher()
-    watcher.watch(lambda t: posts, 4.0, lambda t: Pose2D(0.2 * t, 0.3 * t, 0.1 * t))
-    assert watcher.ever == set()
 
 
 def test_a_moving_obstacle_leaves_no_hits_behind():

@@ -37,10 +37,8 @@ COUNTS = (
     "score",
     "time_ratio",
 )
-EARLIER: Mapping[str, Any] = {
-    "attention": "none",
-    "legs": False,
-}  # of results that do not name a condition
+# Of results that do not name a condition.
+EARLIER: Mapping[str, Any] = {"attention": "none", "legs": False}
 SHOWN = 10  # numbers in a message
 
 

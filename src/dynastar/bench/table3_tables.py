@@ -106,10 +106,10 @@ def _driving_table(rows: Mapping[str, Sequence[Row]]) -> Table:
 
 def _own_table(row: Row) -> Table:
     way = (row["grid_length"], row["grid_turning_points"])
-    driven = (row.get("length"), row.get("turning_points"))
+    hybrid = (row.get("length"), row.get("turning_points"))
     lines: list[tuple[Cell, ...]] = [
         ("improved A*, grid path", *way, *PRINTED["improved"]),
-        ("hybrid", *driven, *PRINTED["hybrid"]),
+        ("hybrid", *hybrid, *PRINTED["hybrid"]),
     ]
     if row["outcome"] == "arrived":
         ratios = (length_ratio(row), turning_ratio(row), *_printed_ratios())

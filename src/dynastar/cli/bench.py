@@ -91,7 +91,9 @@ def _add_missions(parser: argparse.ArgumentParser) -> None:
         help="of scripted walkers: late (the default of people and crowd), or none",
     )
     parser.add_argument(
-        "--legs", action="store_true", help="the lidar sees the legs of walkers, not their bodies"
+        "--legs",
+        action="store_true",
+        help="the lidar of this simulator sees walkers' legs, not bodies",
     )
     parser.add_argument(
         "--controller",
@@ -176,13 +178,7 @@ def _run(arguments: argparse.Namespace, options: "Options") -> int:
 
 
 def _run_all(arguments: argparse.Namespace) -> int:
-    from dynastar.bench.scoreboard import (
-        COMPETITORS,
-        QUICK_COMPETITORS,
-        QUICK_EVERY,
-        picture,
-        run_all,
-    )
+    from dynastar.bench import scoreboard
     from dynastar.bench.scoreboard_tables import quality_table, table
     from dynastar.bench.tables import as_text
     from dynastar.cli.compiling import prepare
@@ -198,11 +194,11 @@ def _run_all(arguments: argparse.Namespace) -> int:
     prepare()
     others: tuple[str, ...] = ()
     if arguments.controller is None:
-        others = QUICK_COMPETITORS if arguments.quick else COMPETITORS
-    every = QUICK_EVERY if arguments.quick else 1
-    result = run_all(options, progress=True, keep=keep, others=others, every=every)
+        others = scoreboard.QUICK_COMPETITORS if arguments.quick else scoreboard.COMPETITORS
+    every = scoreboard.QUICK_EVERY if arguments.quick else 1
+    result = scoreboard.run_all(options, progress=True, keep=keep, others=others, every=every)
     _write(result, file, keep)
-    save(picture(result), folder / "all.png")
+    save(scoreboard.picture(result), folder / "all.png")
     text = "\n\n".join(map(as_text, (table(result), quality_table(result))))
     (folder / "all.txt").write_text(text + "\n", encoding="utf-8")
     print(as_json(result) if arguments.json_out == "-" else text)
