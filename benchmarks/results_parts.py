@@ -99,9 +99,9 @@ def parts() -> list[Part]:
         bench("random", 5, "--missions", "200"),
         bench("physics", 6),
         bench("robots", 8),
-        paper("clutter", 25),
+        paper("clutter", 30),
         Part("scoreboard", 20, ("benchmarks/scoreboard.py",)),
-        paper("table3", 58),
+        paper("table3", 90),
         paper("ladder", 50),
         paper("ablation", 100),
     ]

@@ -20,8 +20,8 @@ NO_GROUP = -1
 NEW_SPEED = 1.0  # m/s, standard deviation of the velocity of a new track
 ERROR = 0.01  # m, standard deviation of a centre with both ends in view, besides the beams' spacing
 HIDDEN_ERROR = (1.0, 2.0, 2.0, 10.0)  # times that with NEITHER, FIRST, LAST, BOTH ends hidden
-LEGS_ERROR, LEG_ERROR = 0.2, 0.4  # m, those of a person of whom both legs are seen, or one
-PAIR_RADIUS = 0.2  # m of two legs side by side at most
+LEGS_ERROR, LEG_ERROR = 0.2, 0.4  # m, the same of a person's centre by both legs, and by one
+PAIR_RADIUS = 0.2  # m, half the width of two legs side by side at most
 MARGIN = 0.1  # m round a disc where points are still its own; farther from its start, it has moved
 SURE = 2.0  # standard deviations
 STEADY = 0.14  # s that motion has to last
@@ -51,7 +51,7 @@ class Fields:
     margin: float  # m round the disc where points are still its own, -inf for none
     measured: float  # s with both ends in view; until then the radius is assumed
     free: float  # fraction of its points in space that an earlier scan showed as free
-    legs: bool  # of a person: the radius is TYPICAL_RADIUS
+    legs: bool  # a person of whom the legs are seen; the radius is TYPICAL_RADIUS
     misfit: float  # mean square of its innovations, normalised
     start_x: float  # m, where it was first seen or has stopped
     start_y: float
@@ -137,8 +137,8 @@ def correct(track, group, points, sensor):
     """Kalman update of a track with the disc that fits its group.
 
     The centre shifts, which is no motion, where the radius is corrected and where an end comes into
-    view or out of it; that of a track known to move by SHIFT at most. The legs of a person have another
-    centre, with an error of its own, and no radius to be measured.
+    view or out of it; that of a track known to move by SHIFT at most. By legs the centre is that of the
+    group, and the radius is not measured.
     """
     dt = min(max(sensor.stamp - track.seen, 1e-3), 1.0)
     too_wide = group.hidden == NEITHER and group.radius > PAIR_RADIUS
@@ -220,9 +220,9 @@ def judge(track, now, space, fastest):
     """Decide whether a track moves; sets its state, and ``started`` if it begins to.
 
     A track moves once its motion is steady and faster than REST_SPEED beyond doubt, and either it lies
-    in space that was seen free before, or the place where it was first seen is seen free now. A person
-    known by the legs has moved once farther from the start than a leg alone can be off. It
-    has stopped after REST_TIME below that speed.
+    in space that was seen free before, or the place where it was first seen is seen free now. Where legs
+    are seen, its centre has to be farther from the start than LEG_ERROR. It has stopped after REST_TIME
+    below that speed.
     """
     speed = math.hypot(track.vx, track.vy)
     if speed > fastest:  # two obstacles taken for one
