@@ -12,8 +12,7 @@ from dynastar.dwa.rollout import Start
 from dynastar.dwa.scene import AT_REST
 from dynastar.dwa.terms import most_progress
 from dynastar.field import Field
-from dynastar.guidance import CostToGo
-from dynastar.guidance.cost_to_go import find_descent
+from dynastar.guidance.cost_to_go import with_descent
 from dynastar.guidance.marching import extend, march, queue_for
 from dynastar.perception import PredictionConfig
 from dynastar.perception.hidden import Hidden
@@ -76,21 +75,17 @@ def centres_of(closed):
 
 def cost_to_go_of(value, filled, resolution):
     """A CostToGo from the values of a march, low corner at the origin."""
-    made = CostToGo(Field(value, 0.0, 0.0, resolution), filled, *np.empty((2, *value.shape)))
-    find_descent(made)
-    return made
+    return with_descent(Field(value, 0.0, 0.0, resolution), filled)
 
 
 def cost_to_go_to(goal, closed, radius):
     """The cost-to-go to ``goal`` (m) of a disc, at 1 a metre."""
     n, a = SIDE // 2, 2 * CELL
     room = field_of(closed).values.reshape(n, 2, n, 2).max(axis=(1, 3)) >= radius
-    value, filled = np.empty((n, n)), np.empty((n, n))
     row, column = int(goal[1] / a), int(goal[0] / a)
     cost = np.where(room, 1.0, np.inf)
-    march(cost, a, (row, column, 0.0), (row, column), 99.0, value, queue_for(n * n))
-    extend(value, a, filled)
-    return cost_to_go_of(value, filled, a)
+    value = march(cost, a, (row, column, 0.0), (row, column), 99.0, queue_for(n * n))
+    return cost_to_go_of(value, extend(value, a), a)
 
 
 def hidden_in(distance, speed):

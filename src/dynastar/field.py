@@ -1,6 +1,6 @@
 """Fields of numbers on square cells, and how kernels read them between the cells' centres."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +18,12 @@ class Field(NamedTuple):
     x0: float
     y0: float
     resolution: float
+
+
+def blocks(combine: np.ufunc, cells: npt.NDArray[Any], side: int) -> npt.NDArray[Any]:
+    """``combine`` of all ``side`` x ``side`` cells of each block; rows and columns are multiples of it."""
+    rows = combine.reduce(cells.reshape(-1, side, cells.shape[1]), axis=1)
+    return np.asarray(combine.reduce([rows[:, j::side] for j in range(side)]))
 
 
 @inner

@@ -13,10 +13,8 @@ A = 0.1
 
 
 def march(cost, row, column, begin=0.0, stop=None, beyond=1e3):
-    value, seed = np.empty(cost.shape), (row, column, begin)
-    stop = stop or (row, column)
-    marching.march(cost, A, seed, stop, beyond, value, marching.queue_for(cost.size))
-    return value
+    seed, stop = (row, column, begin), stop or (row, column)
+    return marching.march(cost, A, seed, stop, beyond, marching.queue_for(cost.size))
 
 
 def walled(inner):
@@ -113,8 +111,7 @@ def test_from_where_no_way_leads_the_filled_values_lead_out():
     cost = np.ones((30, 30))
     cost[10:20, 10:20] = np.inf
     value = march(cost, 15, 2)
-    filled = np.empty_like(value)
-    marching.extend(value, A, filled)
+    filled = marching.extend(value, A)
     inside = filled[10:20, 10:20]
     assert np.isfinite(filled).all()
     assert (filled[np.isfinite(value)] == value[np.isfinite(value)]).all()

@@ -28,8 +28,7 @@ def cost_of(rows, columns):
 @settings(max_examples=30, deadline=None)
 def test_the_cost_of_a_metre_rises_towards_obstacles(seed):
     distance = np.random.default_rng(seed).uniform(0.0, 1.2, (20, 24)).astype(np.float32)
-    cost = np.empty((10, 12))
-    travel_cost(distance, 2, 0.35, 0.25, cost)
+    cost = travel_cost(distance, 2, 0.35, 0.25)
     clear = distance.reshape(10, 2, 12, 2).max(axis=(1, 3)).astype(float) - 0.35
     expected = 1.0 + NEAR_COST * np.maximum(0.0, 1.0 - clear / 0.25) ** 2
     np.testing.assert_allclose(cost, np.where(clear < 0.0, np.inf, expected), rtol=1e-6)

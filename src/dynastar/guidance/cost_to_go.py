@@ -14,9 +14,7 @@ from dynastar.compiled import inner, njit
 from dynastar.field import Field, locate
 
 Floats = npt.NDArray[np.float64]
-KNOWN = (
-    0.05  # of the weights of the four cells round a point, to interpolate between the known ones
-)
+KNOWN = 0.05  # of the weights of the four cells round a point, to read those that are known
 
 
 class CostToGo(NamedTuple):
@@ -31,67 +29,55 @@ class CostToGo(NamedTuple):
     descent_y: Floats
 
 
-@njit(cache=True)
-def value_at(cost_to_go, x, y):
-    """The cost-to-go (m) at a point: bilinear between the cells where it is known."""
-    row, column, up, right = locate(cost_to_go.value, x, y)
-    values = cost_to_go.value.values
-    total = weight = 0.0
-    for i in range(2):
-        for j in range(2):
-            value = values[np.uint64(row + i), np.uint64(column + j)]
-            if value < np.inf:
-                w = (up if i else 1.0 - up) * (right if j else 1.0 - right)
-                total += w * value
-                weight += w
-    if weight > KNOWN:
-        return total / weight
-    return cost_to_go.filled[row + (up > 0.5), column + (right > 0.5)]
-
-
 @inner
-def direction_at(cost_to_go, x, y):
-    """Direction of the descent at a point, nearly a unit vector: bilinear where it is known."""
+def read(cost_to_go, x, y):
+    """The value (m) and the descent (x, y) at a point: bilinear between the cells where it is known.
+
+    The descent is nearly a unit vector.
+    """
     row, column, up, right = locate(cost_to_go.value, x, y)
-    values = cost_to_go.value.values
-    ux = uy = weight = 0.0
+    total = ux = uy = weight = 0.0
     for i in range(2):
         for j in range(2):
             r, c = np.uint64(row + i), np.uint64(column + j)
-            if values[r, c] < np.inf:
+            value = cost_to_go.value.values[r, c]
+            if value < np.inf:
                 w = (up if i else 1.0 - up) * (right if j else 1.0 - right)
+                total += w * value
                 ux += w * cost_to_go.descent_x[r, c]
                 uy += w * cost_to_go.descent_y[r, c]
                 weight += w
     if weight > KNOWN:
-        return ux, uy
-    row, column = row + (up > 0.5), column + (right > 0.5)
-    return cost_to_go.descent_x[row, column], cost_to_go.descent_y[row, column]
+        return total / weight, ux, uy
+    cell = row + (up > 0.5), column + (right > 0.5)
+    return cost_to_go.filled[cell], cost_to_go.descent_x[cell], cost_to_go.descent_y[cell]
+
+
+@njit(cache=True)
+def value_at(cost_to_go, x, y):
+    """The cost-to-go (m) at a point."""
+    return read(cost_to_go, x, y)[0]
 
 
 @inner
 def turn_to_descent(cost_to_go, pose, ahead):
     """Angle (rad, -pi to pi) from a pose's heading to the descent ``ahead`` m in front of it."""
-    ux, uy = direction_at(cost_to_go, pose.x + ahead * pose.cos, pose.y + ahead * pose.sin)
+    _, ux, uy = read(cost_to_go, pose.x + ahead * pose.cos, pose.y + ahead * pose.sin)
     return math.atan2(pose.cos * uy - pose.sin * ux, pose.cos * ux + pose.sin * uy)
 
 
 @njit(cache=True)
-def find_descent(cost_to_go):
-    """Write the unit vector in which the cost-to-go falls at each cell.
+def with_descent(value, filled):
+    """The CostToGo of a Field of values, with the unit vector in which they fall at each cell.
 
     Differences are taken to the lower neighbour of each axis, as the marching did, so that walls
     have no part in them. (0, 0) where the value is least, and in the outermost cells.
     """
-    descent_x, descent_y = cost_to_go.descent_x, cost_to_go.descent_y
-    rows, columns = cost_to_go.filled.shape
-    descent_x[:] = 0.0
-    descent_y[:] = 0.0
+    rows, columns = filled.shape
+    descent_x, descent_y = np.zeros(filled.shape), np.zeros(filled.shape)
     for r in range(1, rows - 1):
         for c in range(1, columns - 1):
-            values = cost_to_go.value.values
-            if values[r, c] == np.inf:
-                values = cost_to_go.filled
+            values = value.values if value.values[r, c] < np.inf else filled
             here, west, east = values[r, c], values[r, c - 1], values[r, c + 1]
             south, north = values[r - 1, c], values[r + 1, c]
             gx = max(0.0, here - min(west, east)) * (1.0 if east < west else -1.0)
@@ -99,17 +85,18 @@ def find_descent(cost_to_go):
             steep = math.sqrt(gx * gx + gy * gy)
             if 0.0 < steep < np.inf:
                 descent_x[r, c], descent_y[r, c] = gx / steep, gy / steep
+    return CostToGo(value, filled, descent_x, descent_y)
 
 
 @njit(cache=True)
-def trace(cost_to_go, x, y, line):
-    """Write points along the steepest descent from (x, y) to ``line`` (n, 2); returns how many."""
-    step = cost_to_go.value.resolution
-    for k in range(len(line)):
+def trace(cost_to_go, x, y, most):
+    """Points (n, 2) along the steepest descent from (x, y), ``most`` at the most."""
+    line, step = np.empty((most, 2)), cost_to_go.value.resolution
+    for k in range(most):
         line[k, 0], line[k, 1] = x, y
-        ux, uy = direction_at(cost_to_go, x, y)
+        left, ux, uy = read(cost_to_go, x, y)
         steep = math.sqrt(ux * ux + uy * uy)
-        if steep < 1e-9 or value_at(cost_to_go, x, y) < 2.0 * step:
-            return k + 1
+        if steep < 1e-9 or left < 2.0 * step:
+            return line[: k + 1]
         x, y = x + step * ux / steep, y + step * uy / steep
-    return len(line)
+    return line

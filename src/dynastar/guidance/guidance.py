@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from dynastar.clearance import lower_bounds
 from dynastar.field import Field
-from dynastar.guidance.cost_to_go import CostToGo, find_descent, trace, value_at
+from dynastar.guidance.cost_to_go import CostToGo, trace, value_at, with_descent
 from dynastar.guidance.marching import extend, march, queue_for
 from dynastar.guidance.seed import nearest_open, path_exit_cell
 from dynastar.guidance.travel_cost import Encounter, add_encounters, travel_cost
@@ -60,7 +60,7 @@ class Guide(NamedTuple):
 
 
 class Guidance:
-    """Computes the cost-to-go of the present path; its arrays are made once.
+    """Computes the cost-to-go of the present path.
 
     ``keep_to_path`` asks for the distances to planned paths, too (needed for sigma > 0).
     """
@@ -68,60 +68,46 @@ class Guidance:
     def __init__(
         self, cells: int, resolution: float, margin: float, comfort: float, keep_to_path: bool
     ) -> None:
-        n = cells // FACTOR
-        self.resolution = resolution * FACTOR
+        self.resolution, self._cells = resolution * FACTOR, cells // FACTOR  # along a side
         self._margin, self._comfort, self._keep_to_path = margin, comfort, keep_to_path
-        self._cost = np.empty((n, n))
-        self._value, self._filled = np.full((n, n), np.inf), np.empty((n, n))
-        self._descent_x, self._descent_y = np.empty((n, n)), np.empty((n, n))
-        self._queue = queue_for(n * n)
-        self._line = np.empty((LINE_POINTS, 2))
+        self._queue = queue_for(self._cells**2)
 
     def update(
-        self,
-        obstacles: Field,
-        target: PathTarget,
-        moving: Prediction,
-        encounter: Encounter,
+        self, obstacles: Field, target: PathTarget, moving: Prediction, encounter: Encounter
     ) -> Guide:
         """The way to the goal for a robot at the place of ``encounter``.
 
         ``obstacles`` are distances to the local map's obstacles.
         """
         a, x0, y0 = self.resolution, obstacles.x0, obstacles.y0
-        cost = Field(self._cost, x0, y0, a)
-        travel_cost(obstacles.values, FACTOR, self._margin, self._comfort, self._cost)
-        to_path = obstacles
+        metre = travel_cost(obstacles.values, FACTOR, self._margin, self._comfort)
+        cost, to_path = Field(metre, x0, y0, a), obstacles
         if target.is_given or self._keep_to_path:
             to_path = self._distance_to_path(target, x0, y0)
         if target.is_given:
-            self._cost += OFF_PATH_COST * np.minimum(to_path.values, 1.0)
+            metre += OFF_PATH_COST * np.minimum(to_path.values, 1.0)
         add_encounters(cost, moving, encounter)
-        stop = self._cell_of(encounter.x - x0, encounter.y - y0)
-        march(self._cost, a, self._seed(target, cost), stop, KNOWN_BEYOND, self._value, self._queue)
-        extend(self._value, a, self._filled)
-        value = Field(self._value, x0, y0, a)
-        cost_to_go = CostToGo(value, self._filled, self._descent_x, self._descent_y)
-        find_descent(cost_to_go)
-        count = trace(cost_to_go, encounter.x, encounter.y, self._line)
-        reachable = bool(np.isfinite(self._value[stop]))
-        return Guide(cost_to_go, to_path, self._line[:count].copy(), reachable)
+        stop = self._cell_of(encounter, cost)
+        value = march(metre, a, self._seed(target, cost), stop, KNOWN_BEYOND, self._queue)
+        cost_to_go = with_descent(Field(value, x0, y0, a), extend(value, a))
+        line = trace(cost_to_go, encounter.x, encounter.y, LINE_POINTS)
+        return Guide(cost_to_go, to_path, line, reachable=bool(np.isfinite(value[stop])))
 
-    def _cell_of(self, x: float, y: float) -> tuple[int, int]:
-        """The nearest cell where the robot fits to a place in the local map (m from its corner)."""
-        last = len(self._cost) - 1
-        row, column = int(y / self.resolution), int(x / self.resolution)
-        row, column = min(max(row, 0), last), min(max(column, 0), last)
-        row, column = nearest_open(self._cost, row, column, OPEN_WITHIN)
-        return int(row), int(column)
+    def _cell_of(self, encounter: Encounter, cost: Field) -> tuple[int, int]:
+        """The cell of the robot, or the nearest where it fits; the robot is in the local map."""
+        row, column = (
+            min(max(int(metres / self.resolution), 0), self._cells - 1)
+            for metres in (encounter.y - cost.y0, encounter.x - cost.x0)
+        )
+        return nearest_open(cost.values, row, column, OPEN_WITHIN)
 
     def _distance_to_path(self, target: PathTarget, x0: float, y0: float) -> Field:
         """Distances (m) to the part of the path that lies ahead in the local map."""
         a = self.resolution
-        end = target.s + min(target.ahead, a * len(self._cost))
+        end = target.s + min(target.ahead, a * self._cells)
         points = target.path.resampled(target.s, end, a)
         cells = np.round((points - (x0, y0)) / a - 0.5).astype(np.int32)
-        off = np.ones(self._cost.shape, np.uint8)
+        off = np.ones((self._cells, self._cells), np.uint8)
         cv2.polylines(off, [cells], False, 0)
         return Field(lower_bounds(off, a), x0, y0, a)
 
@@ -130,4 +116,4 @@ class Guidance:
         path = target.path
         span = target.s, min(path.length, target.s + target.ahead)
         row, column, s = path_exit_cell(path.points, path.arc, span, cost, OPEN_WITHIN // 2)
-        return int(row), int(column), path.length - float(s)
+        return row, column, path.length - s

@@ -22,8 +22,8 @@ def queue_for(cells):
 
 
 @njit(cache=True)
-def march(cost, resolution, seed, stop, beyond, value, queue):
-    """Solves |grad value| = ``cost`` from ``seed`` (row, column, value) outwards, inf where not reached.
+def march(cost, resolution, seed, stop, beyond, queue):
+    """The solution of |grad value| = ``cost`` from ``seed`` (row, column, value), inf where not reached.
 
     Ends ``beyond`` metres after the value at ``stop`` (row, column) is known. The outermost cells are
     closed: their ``cost`` is set to inf. ``queue`` is made by ``queue_for``.
@@ -31,7 +31,7 @@ def march(cost, resolution, seed, stop, beyond, value, queue):
     rows, columns = cost.shape
     cost[0], cost[rows - 1] = np.inf, np.inf
     cost[:, 0], cost[:, columns - 1] = np.inf, np.inf
-    value[:] = np.inf
+    value = np.full(cost.shape, np.inf)
     costs, values = cost.reshape(-1), value.reshape(-1)
     (seed_row, seed_column, begin), (stop_row, stop_column) = seed, stop
     row, column = min(max(seed_row, 1), rows - 2), min(max(seed_column, 1), columns - 2)
@@ -81,16 +81,16 @@ def march(cost, resolution, seed, stop, beyond, value, queue):
     for cell in range(values.size):
         if values[cell] > limit:
             values[cell] = np.inf
+    return value
 
 
 @njit(cache=True)
-def extend(value, resolution, filled):
-    """Writes ``value`` to ``filled`` and, where it is not known, values that lead to where it is."""
+def extend(value, resolution):
+    """A copy of ``value`` that, where it is not known, has values that lead to where it is."""
     rows, columns = value.shape
-    step = WALL_COST * resolution
+    filled, step = value.copy(), WALL_COST * resolution
     for r in range(rows):
         for c in range(columns):
-            filled[r, c] = value[r, c]
             if value[r, c] == np.inf:
                 if r > 0:
                     filled[r, c] = min(filled[r, c], filled[r - 1, c] + step)
@@ -103,3 +103,4 @@ def extend(value, resolution, filled):
                     filled[r, c] = min(filled[r, c], filled[r + 1, c] + step)
                 if c < columns - 1:
                     filled[r, c] = min(filled[r, c], filled[r, c + 1] + step)
+    return filled

@@ -4,8 +4,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from dynastar.compiled import njit
+from dynastar.field import blocks
 from dynastar.perception.prediction import contact_probability
 
 NEAR_COST = 4.0  # extra cost of a metre right at the margin of an obstacle
@@ -28,26 +30,18 @@ class Encounter(NamedTuple):
     discount: float
 
 
-@njit(cache=True)
-def travel_cost(distance, factor, margin, comfort, cost):
-    """Write the cost of a metre in every cell to ``cost``, inf where the robot does not fit.
+def travel_cost(
+    distance: npt.NDArray[np.float32], factor: int, margin: float, comfort: float
+) -> npt.NDArray[np.float64]:
+    """The cost of a metre in every cell, inf where the robot does not fit.
 
     ``distance`` holds metres to the nearest obstacle on a grid ``factor`` times as fine; a cell has
     the clearance of the best of its parts. 1 + 4 (1 - clearance / comfort)^2, ``comfort`` m beyond
     ``margin`` m.
     """
-    for row in range(cost.shape[0]):
-        for column in range(cost.shape[1]):
-            best = 0.0
-            for i in range(factor):
-                for j in range(factor):
-                    best = max(best, distance[row * factor + i, column * factor + j])
-            clear = best - margin
-            if clear < 0.0:
-                cost[row, column] = np.inf
-            else:
-                short = max(0.0, 1.0 - clear / comfort)
-                cost[row, column] = 1.0 + NEAR_COST * short * short
+    clear = blocks(np.maximum, distance, factor).astype(np.float64) - margin
+    short = np.maximum(0.0, 1.0 - clear / comfort)
+    return np.where(clear < 0.0, np.inf, 1.0 + NEAR_COST * short * short)
 
 
 @njit(cache=True)
