@@ -9,7 +9,7 @@ from dynastar.dwa import DwaConfig, Scene
 from dynastar.dwa.clearance import Closed
 from dynastar.dwa.dwa import rules_of
 from dynastar.dwa.rollout import Start
-from dynastar.dwa.scene import AT_REST
+from dynastar.dwa.scene import AT_REST, Surroundings
 from dynastar.dwa.terms import most_progress
 from dynastar.field import Field
 from dynastar.guidance.cost_to_go import with_descent
@@ -102,16 +102,19 @@ def scene_of(closed, goal=(7.0, 4.0), moving=(), radius=0.3, margin=0.05, latenc
     ``moving`` are moving obstacles, ``radius`` (m) is that for which the cost-to-go is computed.
     """
     distance = field_of(closed)
-    scene = Scene(
+    around = Surroundings(
         closed=closed_space(closed),
+        moving=predict(moving, PredictionConfig(), (latency, STEP, STEPS)),
+        hidden=others.pop("hidden", NOTHING_HIDDEN),
+        margin_to_closed=margin,
+        latency=latency,
+    )
+    scene = Scene(
+        around=around,
         distance_to_obstacle=distance,
         distance_to_path=distance,
         cost_to_go=cost_to_go_to(goal, closed, radius + margin),
-        moving=predict(moving, PredictionConfig(), (latency, STEP, STEPS)),
-        hidden=NOTHING_HIDDEN,
         margin=margin,
-        margin_to_closed=margin,
-        latency=latency,
         last=AT_REST,
         v_cap=9.0,
         path_weight=0.0,

@@ -49,11 +49,11 @@ OVERSHOOT = 0.25 * CELL  # the longest stretch between two looks
 
 
 def certify(scene, robot, state, command):
-    return certified_stop(scene, rules_for(robot), state, command, 0.0)
+    return certified_stop(scene.around, rules_for(robot), state, command, 0.0)
 
 
 def rests(scene, robot, state, command):
-    return rests_in_time(scene, rules_for(robot), state, command)
+    return rests_in_time(scene.around, rules_for(robot), state, command)
 
 
 def reachable_command(random, limits, v, omega):
@@ -118,7 +118,7 @@ def test_a_drive_that_is_faster_than_told_stops_before_a_wall_too(error):
         x = wall + 0.5 * CELL - MARGIN - 0.3 - room - slack
         rules = rules_of(ROUND, DwaConfig(), PERIOD, drive_error=error)
         state = state_at(x, 4.0, 0.0, v, 0.0)
-        assert certified_stop(scene, rules, state, (v, 0.0), 0.0) == expected
+        assert certified_stop(scene.around, rules, state, (v, 0.0), 0.0) == expected
 
 
 def test_a_command_that_acts_for_longer_needs_more_room():
@@ -128,7 +128,7 @@ def test_a_command_that_acts_for_longer_needs_more_room():
     for slack, expected in ((0.01, ADMISSIBLE), (-0.01, NO_STOP)):
         x = wall + 0.5 * CELL - MARGIN - 0.3 - room - slack
         state = state_at(x, 4.0, 0.0, v, 0.0)
-        assert certified_stop(scene, rules, state, (v, 0.0), hold) == expected
+        assert certified_stop(scene.around, rules, state, (v, 0.0), hold) == expected
 
 
 @given(st.sampled_from(sorted(SHAPES)), st.integers(0, 10**6))
@@ -137,7 +137,7 @@ def test_a_stop_is_certified_if_and_only_if_its_whole_sweep_keeps_clear(name, se
     robot, random = SHAPES[name], np.random.default_rng(seed)
     closed = scattered(random, random.choice([0.0003, 0.001, 0.003]))
     scene = scene_of(closed, margin=MARGIN)
-    boxes, hit = boxes_of(scene.closed)
+    boxes, hit = boxes_of(scene.around.closed)
     v, omega = random.uniform(-0.4, 1.2), random.uniform(-1.5, 1.5)
     state = state_at(*random.uniform(1.0, 7.0, 2), random.uniform(-4, 4), v, omega)
     start = state.pose
@@ -166,7 +166,7 @@ def test_no_obstacle_with_bounded_acceleration_touches_a_robot_that_still_moves(
     obstacle = MovingObstacle(x, y, *random.uniform(-1.5, 1.5, 2), 0.3)
     latency = random.choice([0.0, 0.2])
     scene = scene_of(empty(), moving=[obstacle], margin=MARGIN, latency=latency)
-    bound = scene.moving.acceleration
+    bound = scene.around.moving.acceleration
     v, omega = random.uniform(-0.4, 1.2), random.uniform(-1.5, 1.5)
     state = state_at(4.0, 4.0, 0.0, v, omega)
     command = reachable_command(random, WEAK, v, omega)

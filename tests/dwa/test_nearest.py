@@ -6,7 +6,6 @@ from dynastar.dwa.admissible import is_admissible, refusal
 from dynastar.dwa.dwa import DynamicWindow, StopStart, _records
 from dynastar.dwa.motion import command_towards
 from dynastar.dwa.nearest import PARTS
-from dynastar.dwa.scene import Surroundings
 from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import Limits, Robot
@@ -20,8 +19,7 @@ class Case:
     """A robot at ``pose`` that moves at ``twist``, among closed cells."""
 
     def __init__(self, closed, pose, twist):
-        scene = scene_of(closed)
-        self.around = Surroundings(*(getattr(scene, name) for name in Surroundings._fields))
+        self.around = scene_of(closed).around
         self.window = DynamicWindow(ROUND, DwaConfig(), PERIOD)
         self.twist = twist
         self.stops = [StopStart(Pose2D(*pose), twist, PERIOD)]

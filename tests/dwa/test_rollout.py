@@ -62,7 +62,7 @@ def slow_roll_out(scene, rules, start, manoeuvre):
     pose = Pose2D(at.x, at.y, math.atan2(at.sin, at.cos))
     twist, gap = Twist(start.state.v, start.state.omega), start.gap
     held = max(1, round(manoeuvre.hold / schedule.period))
-    solid = scene.closed._replace(distance=scene.distance_to_obstacle)
+    solid = scene.around.closed._replace(distance=scene.distance_to_obstacle)
     rows, rests, inside = [], False, True
     for i, duration in enumerate(schedule.duration):
         wanted = manoeuvre.v, manoeuvre.omega
@@ -81,7 +81,9 @@ def slow_roll_out(scene, rules, start, manoeuvre):
             at = Pose(pose.x, pose.y, math.cos(pose.theta), math.sin(pose.theta))
             inside = all(RIM * 2 * CELL <= c <= 8.0 - RIM * 2 * CELL for c in pose[:2])
             gap = least_clearance(scene.distance_to_obstacle, rules.body, at) - scene.margin
-            slack = clearance_slack(solid, rules.body, scene.margin_to_closed, start.state.pose, at)
+            slack = clearance_slack(
+                solid, rules.body, scene.around.margin_to_closed, start.state.pose, at
+            )
             if inside and slack < -ROUNDING:
                 if i < schedule.held:
                     return False, rows

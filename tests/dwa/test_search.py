@@ -141,7 +141,7 @@ def risk_of(twist, scene, pose):
     rows = np.zeros(len(rules.schedule.step), ROW)
     start = start_of(rules, state_at(*pose, *twist), 1.0, 5.0)
     roll_out(scene, rules, start, Manoeuvre(*twist, 9.0, FOLLOW), rows)
-    return risk(scene.moving, rules, rows)
+    return risk(scene.around.moving, rules, rows)
 
 
 @pytest.mark.parametrize("lateral", [-0.15, 0.15])
@@ -163,7 +163,7 @@ def test_the_robot_passes_before_an_obstacle_where_a_stop_would_end_in_its_way()
     pose, twist = Pose2D(3.0, 4.0, 0.0), Twist(1.0, 0.0)
     scene = scene_of(empty(), moving=[obstacle], last=Manoeuvre(1.0, 0.0, 0.5, FOLLOW))
     window = DynamicWindow(ROUND, DwaConfig(), PERIOD)
-    assert not window.admits(scene, [StopStart(pose, twist, PERIOD)], Twist(1.0, 0.0))
+    assert not window.admits(scene.around, [StopStart(pose, twist, PERIOD)], Twist(1.0, 0.0))
     choice = window.choose(pose, twist, scene)
     assert choice.command is not None
     assert choice.command.v > 0.9
@@ -236,7 +236,7 @@ def test_a_stop_is_certified_from_every_state_given():
     for stops, admitted in (
         ([far], True), ([near_wall], False), ([near_wall, far], False), ([far, near_wall], False)
     ):  # fmt: skip
-        assert window.admits(scene, stops, Twist(1.0, 0.0)) == admitted
+        assert window.admits(scene.around, stops, Twist(1.0, 0.0)) == admitted
         choice = window.choose(far.pose, far.twist, scene, stops)
         assert (choice.refusals["no certified stop"] == 0) == admitted
 
@@ -269,9 +269,9 @@ def slow_choice(rules, state, scene, choice):
             slew(state.v, v, limits.v_accel, limits.v_brake, PERIOD),
             slew(state.omega, omega, limits.omega_accel, limits.omega_brake, PERIOD),
         )
-        code = certified_stop(scene, rules, state, command, PERIOD)
+        code = certified_stop(scene.around, rules, state, command, PERIOD)
         if code == ADMISSIBLE:
-            code = rests_in_time(scene, rules, state, command)
+            code = rests_in_time(scene.around, rules, state, command)
         short = schedule.held * schedule.period
         kinds = [(short, tail) for tail in (FOLLOW, STOP, BACK)]
         if abs(v) >= 0.1 * limits.v_max and abs(omega) <= 2.0:
@@ -288,8 +288,8 @@ def slow_choice(rules, state, scene, choice):
             manoeuvre = Manoeuvre(v, omega, hold, tail)
             if not roll_out(scene, rules, start, manoeuvre, rows):
                 continue
-            stop = scene.latency + PERIOD + stopping_time(*command, limits)
-            if code == MOVING and not passes_clear(scene.moving, rules, rows, stop):
+            stop = scene.around.latency + PERIOD + stopping_time(*command, limits)
+            if code == MOVING and not passes_clear(scene.around.moving, rules, rows, stop):
                 continue
             terms = evaluate(scene, rules, start, manoeuvre, rows)
             risked = tail != FOLLOW or terms.risk > 0.0

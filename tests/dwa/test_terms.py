@@ -232,13 +232,12 @@ def test_the_objective_is_the_weighted_sum_less_the_risk(weights, terms):
 def test_the_terms_of_a_manoeuvre_are_those_of_its_rows():
     random = np.random.default_rng(3)
     rules = rules_for(Robot("round", LIMITS, Footprint.disc(0.3)), DwaConfig(Weights(simi=1.0)))
-    moving = predict(random_obstacles(random), PredictionConfig(), (0.0, STEP, STEPS))
-    scene = scene_of(empty())._replace(moving=moving)
+    scene = scene_of(empty(), moving=random_obstacles(random))
     rows, start = random_rows(random), random_start(random)
     assert t.evaluate(scene, rules, start, MANOEUVRE, rows) == t.Terms(
         heading=t.progress(scene.cost_to_go, rules, start, rows),
         dist=t.dist(rules, start, rows),
         vel=t.vel(rules, MANOEUVRE),
         simi=t.simi(scene.distance_to_path, rules, rows),
-        risk=t.risk(moving, rules, rows),
+        risk=t.risk(scene.around.moving, rules, rows),
     )

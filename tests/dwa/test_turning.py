@@ -39,7 +39,7 @@ def test_there_is_room_if_and_only_if_the_footprint_keeps_clear_all_the_way_roun
     random = np.random.default_rng(seed)
     scene = scene_of(scattered(random, random.choice([0.0005, 0.003])), margin=MARGIN)
     x, y, theta = *random.uniform(1.5, 6.5, 2), random.uniform(-4, 4)
-    start, boxes = at(x, y, theta), boxes_of(scene.closed)
+    start, boxes = at(x, y, theta), boxes_of(scene.around.closed)
     least = min(
         slack_of_constraint(boxes, robot.footprint, MARGIN, start, at(x, y, theta + part * angle))
         for part in np.linspace(0.0, 1.0, 200)

@@ -62,7 +62,7 @@ def test_the_margin_grows_with_the_heading_error_and_the_way_of_a_stop():
             made.append(make(*given)) or made[-1]
         )
         drive.for_seconds(0.1)
-        margins.append((made[-1].margin_to_closed, drive))
+        margins.append((made[-1].around.margin_to_closed, drive))
     assert margins[0][0] == pytest.approx(steady.navigator.margin)
     v = unsure.twist.v
     stop = v * v / (2.0 * LIMITS.v_brake) + 2.0 * v * unsure.navigator.config.period

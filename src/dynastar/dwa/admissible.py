@@ -1,6 +1,6 @@
 """Which commands are admissible: those with a certified stop, the general form of Eq. 7.
 
-A ``scene`` is a Scene, or only the Surroundings.
+``around`` are the Surroundings of a scene.
 """
 
 import math
@@ -36,34 +36,34 @@ def keeps_clear(closed, body, margin, start, pose, arc):
 
 
 @inner
-def refusal(scene, rules, stops_from, command):
+def refusal(around, rules, stops_from, command):
     """ADMISSIBLE, or why a command (v, omega) is not; MOVING where it does not rest in time.
 
     The last of ``stops_from`` is the state in which the command is expected to begin to act.
     """
     for i in range(len(stops_from)):
         begin = stops_from[i]
-        code = certified_stop(scene, rules, state_of(begin), command, begin.hold)
+        code = certified_stop(around, rules, state_of(begin), command, begin.hold)
         if code != ADMISSIBLE:
             return code
-    return rests_in_time(scene, rules, state_of(stops_from[-1]), command)
+    return rests_in_time(around, rules, state_of(stops_from[-1]), command)
 
 
 @njit(cache=True)
-def is_admissible(surroundings, rules, stops_from, command):
+def is_admissible(around, rules, stops_from, command):
     """Whether a command (v, omega) from outside the search is admissible."""
-    return refusal(surroundings, rules, stops_from, command) == ADMISSIBLE
+    return refusal(around, rules, stops_from, command) == ADMISSIBLE
 
 
 @inner
-def certified_stop(scene, rules, state, command, hold):
+def certified_stop(around, rules, state, command, hold):
     """ADMISSIBLE if the robot can come to rest in observed-free space after ``hold`` s of ``command``.
 
     Over a period each speed changes at its own limit; after ``hold``, if that is longer, both ramp to
     zero in proportion, along one arc. ``state`` is that in which the command begins to act. All speeds
     may be greater than said by ``drive_error``, and so are the ways.
     """
-    closed, margin = scene.closed, scene.margin_to_closed
+    closed, margin = around.closed, around.margin_to_closed
     body, limits, start = rules.body, rules.fast_limits, state.pose
     half, more = 0.5 * rules.period, 1.0 + rules.drive_error
     longer = max(hold - rules.period, 0.0)
@@ -85,7 +85,7 @@ def certified_stop(scene, rules, state, command, hold):
 
 
 @inner
-def rests_in_time(scene, rules, state, command):
+def rests_in_time(around, rules, state, command):
     """ADMISSIBLE if the robot is at rest before any moving obstacle can touch it.
 
     A track is somewhere in the disc round its constant-velocity prediction that its acceleration
@@ -93,7 +93,7 @@ def rests_in_time(scene, rules, state, command):
     clear of that, the robot may move if it comes no nearer than at rest.
     """
     (v, omega), limits, start = command, rules.limits, state.pose
-    body, hidden = rules.body, scene.hidden
+    body, hidden = rules.body, around.hidden
     after = driven(state, v, omega, limits, rules.period)
     stop = stopping_time(after.v, after.omega, limits)
     if stop <= 0.0 and state.v == 0.0 and state.omega == 0.0:
@@ -115,7 +115,7 @@ def rests_in_time(scene, rules, state, command):
                 at_start = hidden_gap(hidden, body, start, need)
                 if at_start > need or gap < at_start - NEARER:
                     return HIDDEN
-        if reaches(scene.moving, body, start, pose, scene.latency + t):
+        if reaches(around.moving, body, start, pose, around.latency + t):
             return MOVING
     return ADMISSIBLE
 

@@ -214,19 +214,13 @@ class DynamicWindow:
             return "acceleration"
         return REFUSALS.get(int(np.bincount(codes).argmax()), "score")
 
-    def admits(self, scene: Scene, stops: Stops, command: Twist) -> bool:
+    def admits(self, around: Surroundings, stops: Stops, command: Twist) -> bool:
         """Whether a command from outside the search is admissible; ``stops`` as in ``choose``."""
-        around = Surroundings(*(getattr(scene, name) for name in Surroundings._fields))
         asked = tuple(map(float, command))
         return bool(admissible.is_admissible(around, self.rules, _records(stops), asked))
 
     def nearest(
-        self,
-        surroundings: Surroundings,
-        stops: Stops,
-        twist: Twist,
-        asked: Twist,
-        steady: float = 0.0,
+        self, around: Surroundings, stops: Stops, twist: Twist, asked: Twist, steady: float = 0.0
     ) -> tuple[Twist | None, str]:
         """The admissible command nearest to one ``asked`` for, and why it is not that one, "" if it is.
 
@@ -235,7 +229,7 @@ class DynamicWindow:
         to what could be held for so long. ``stops`` as in ``choose``.
         """
         found, command, code = nearest_admissible(
-            surroundings, self.rules, _records(stops), tuple(twist), tuple(asked), steady
+            around, self.rules, _records(stops), tuple(twist), tuple(asked), steady
         )
         return (Twist(*command) if found else None), REFUSALS.get(code, "")
 

@@ -9,7 +9,7 @@ HALVINGS = 3  # of the step between two parts
 
 
 @njit(cache=True)
-def nearest_admissible(surroundings, rules, stops_from, twist, asked, steady):
+def nearest_admissible(around, rules, stops_from, twist, asked, steady):
     """The admissible command nearest to the speeds ``asked`` (v, omega) for.
 
     First along the arc asked for, as fast as admissible, then turning on the spot. Every command is
@@ -18,22 +18,22 @@ def nearest_admissible(surroundings, rules, stops_from, twist, asked, steady):
     for are refused, or ADMISSIBLE.
     """
     v, omega = asked
-    found, command, why = fastest(surroundings, rules, stops_from, twist, asked, steady)
+    found, command, why = fastest(around, rules, stops_from, twist, asked, steady)
     if not found and v != 0.0 and omega != 0.0:
         turn = 0.0, omega
-        found, command, _ = fastest(surroundings, rules, stops_from, twist, turn, steady)
+        found, command, _ = fastest(around, rules, stops_from, twist, turn, steady)
     return found, command, why
 
 
 @inner
-def fastest(surroundings, rules, stops_from, twist, asked, steady):
+def fastest(around, rules, stops_from, twist, asked, steady):
     """The command towards the largest admissible share of the speeds ``asked`` for.
 
     A robot that has to be ``steady`` starts with no share below a part, so that the noise of its
     sensors does not start and stop it. Returns whether there is such a command, the command, and why
     the speeds asked for are refused, or ADMISSIBLE.
     """
-    command, why = checked(surroundings, rules, stops_from, twist, asked, steady)
+    command, why = checked(around, rules, stops_from, twist, asked, steady)
     if why == ADMISSIBLE:
         return True, command, why
     (v, omega), (now_v, now_omega) = asked, twist
@@ -41,7 +41,7 @@ def fastest(surroundings, rules, stops_from, twist, asked, steady):
     for part in range(PARTS - 1, 0, -1):
         share = part * step
         wanted = share * v, share * omega
-        command, code = checked(surroundings, rules, stops_from, twist, wanted, steady)
+        command, code = checked(around, rules, stops_from, twist, wanted, steady)
         if code == ADMISSIBLE:
             best = share
             break
@@ -50,7 +50,7 @@ def fastest(surroundings, rules, stops_from, twist, asked, steady):
         for _ in range(HALVINGS):
             step *= 0.5
             wanted = (best + step) * v, (best + step) * omega
-            command, code = checked(surroundings, rules, stops_from, twist, wanted, steady)
+            command, code = checked(around, rules, stops_from, twist, wanted, steady)
             if code == ADMISSIBLE:
                 best += step
     command = command_towards(rules, twist, (best * v, best * omega))
@@ -58,12 +58,12 @@ def fastest(surroundings, rules, stops_from, twist, asked, steady):
 
 
 @inner
-def checked(surroundings, rules, stops_from, twist, wanted, steady):
+def checked(around, rules, stops_from, twist, wanted, steady):
     """The command (v, omega) towards ``wanted`` speeds, and why it is refused, or ADMISSIBLE."""
     (v, omega), (now_v, now_omega) = command_towards(rules, twist, wanted), twist
-    code = refusal(surroundings, rules, stops_from, (v, omega))
+    code = refusal(around, rules, stops_from, (v, omega))
     speeds_up = abs(v) > abs(now_v) or abs(omega) > abs(now_omega)
     if code == ADMISSIBLE and steady > 0.0 and speeds_up:
         begin = stops_from[-1]
-        code = certified_stop(surroundings, rules, state_of(begin), wanted, begin.hold + steady)
+        code = certified_stop(around, rules, state_of(begin), wanted, begin.hold + steady)
     return (v, omega), code

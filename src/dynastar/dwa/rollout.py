@@ -138,9 +138,9 @@ def roll_out(scene, rules, start, manoeuvre, rows):
 @inner
 def touches(scene, rules, start, pose):
     """Whether a footprint at ``pose`` is nearer to an obstacle than a certified stop may come."""
-    closed = scene.closed
+    closed, margin = scene.around.closed, scene.around.margin_to_closed
     obstacles = Closed(scene.distance_to_obstacle, closed.occupied, closed.hits, closed.depth)
-    at_start, margin = start.state.pose, scene.margin_to_closed
+    at_start = start.state.pose
     return clearance_slack(obstacles, rules.body, margin, at_start, pose) < -ROUNDING
 
 

@@ -23,7 +23,12 @@ AT_REST = Manoeuvre(0.0, 0.0, 0.0, STOP)
 
 
 class Surroundings(NamedTuple):
-    """What a stop has to keep clear of: all that admissibility takes. The fields are those of ``Scene``."""
+    """What a stop has to keep clear of: all that admissibility takes.
+
+    ``closed`` is what is not observed free. The footprint keeps ``margin_to_closed`` (m) from it, which
+    is less than the margin where the robot stands nearer than that. ``latency`` (s) is when a command
+    given now acts.
+    """
 
     closed: Closed
     moving: Prediction
@@ -33,24 +38,18 @@ class Surroundings(NamedTuple):
 
 
 class Scene(NamedTuple):
-    """The scene against which a window is evaluated.
+    """The scene against which a window is evaluated: what stops keep clear of ``around``, and more.
 
-    ``closed`` is what is not observed free, ``distance_to_obstacle`` is to what is occupied. The
-    footprint keeps ``margin`` (m) from obstacles' cells and ``margin_to_closed`` from closed space,
-    which is less where the robot stands nearer than that. ``latency`` (s) is when a command
-    given now acts, ``last`` the rest of the manoeuvre chosen last, ``v_cap`` (m/s) the speed limit,
-    ``path_weight`` the least weight of keeping to the path.
+    ``distance_to_obstacle`` is to what is occupied, from whose cells the footprint keeps ``margin`` (m).
+    ``last`` is the rest of the manoeuvre chosen last, ``v_cap`` (m/s) the speed limit, ``path_weight``
+    the least weight of keeping to the path.
     """
 
-    closed: Closed
+    around: Surroundings
     distance_to_obstacle: Field
     distance_to_path: Field
     cost_to_go: CostToGo
-    moving: Prediction
-    hidden: Hidden
     margin: float
-    margin_to_closed: float
-    latency: float
     last: Manoeuvre
     v_cap: float
     path_weight: float

@@ -43,7 +43,8 @@ def search(scene, rules, state, stops_from, candidates, rows):
     best, best_score = -1, -np.inf
     for i in range(n):
         candidate = candidates[i]
-        candidate.refused = refusal(scene, rules, stops_from, command_of(candidate))
+        command = candidate.command_v, candidate.command_omega
+        candidate.refused = refusal(scene.around, rules, stops_from, command)
         candidate.score = -np.inf
         if candidate.refused == ADMISSIBLE or candidate.refused == MOVING:
             score(scene, rules, start, i, candidate, rows)
@@ -83,12 +84,6 @@ def fill_candidates(scene, rules, start, candidates):
 
 
 @inner
-def command_of(candidate):
-    """The command (v, omega) of a candidate."""
-    return candidate.command_v, candidate.command_omega
-
-
-@inner
 def is_considered(i, candidate, tail, long, scene, limits):
     """Whether a candidate is rolled out with a tail, and held for the ``long`` time.
 
@@ -112,7 +107,7 @@ def score(scene, rules, start, i, candidate, rows):
     """
     clear_for = 0.0
     if candidate.refused == MOVING:
-        clear_for = scene.latency + rules.period
+        clear_for = scene.around.latency + rules.period
         clear_for += stopping_time(candidate.command_v, candidate.command_omega, rules.limits)
     change = 0.0 if i == LAST else rules.hysteresis
     short_hold, risked = candidate.hold, True
@@ -128,7 +123,7 @@ def score(scene, rules, start, i, candidate, rows):
         manoeuvre = Manoeuvre(candidate.v, candidate.omega, hold, tail)
         if not roll_out(scene, rules, start, manoeuvre, rows):
             break  # all manoeuvres of a candidate begin alike
-        if clear_for > 0.0 and not passes_clear(scene.moving, rules, rows, clear_for):
+        if clear_for > 0.0 and not passes_clear(scene.around.moving, rules, rows, clear_for):
             continue
         candidate.refused = ADMISSIBLE
         terms = evaluate(scene, rules, start, manoeuvre, rows)

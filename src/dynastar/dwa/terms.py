@@ -37,7 +37,7 @@ def evaluate(scene, rules, start, manoeuvre, rows):
         dist(rules, start, rows),
         vel(rules, manoeuvre),
         simi(scene.distance_to_path, rules, rows) if sigma(scene, rules) > 0.0 else 1.0,
-        risk(scene.moving, rules, rows),
+        risk(scene.around.moving, rules, rows),
     )
 
 

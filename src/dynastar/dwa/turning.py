@@ -22,10 +22,10 @@ def has_room_to_turn(scene, rules, start, pose, angle, need):
     """
     spare, short_by = need
     angle = math.copysign(max(abs(angle) - short_by, 0.0), angle)
-    known = scene.distance_to_obstacle
+    known, closed = scene.distance_to_obstacle, scene.around.closed
     not_deep = np.zeros(known.values.shape, np.float32)
-    occupied = Closed(known, scene.closed.occupied, scene.closed.hits, not_deep)
-    margin = scene.margin_to_closed + spare
+    occupied = Closed(known, closed.occupied, closed.hits, not_deep)
+    margin = scene.around.margin_to_closed + spare
     return keeps_clear(occupied, rules.body, margin, start, pose, (0.0, angle))
 
 

@@ -55,21 +55,6 @@ class Driving(Admissibility):
         self, pose: Pose2D, v: float, view: View, target: PathTarget, planning_map: PlanningMap
     ) -> Scene:
         """The scene for a robot that is at ``pose`` when a command acts, and drives at ``v`` now (m/s)."""
-        guide = self.guide = self._guided(view, target, pose)
-        cap = self.speed_cap(pose, guide.line, self.guidance.resolution, planning_map)
-        return Scene(
-            **self.surroundings(pose, v, view)._asdict(),
-            distance_to_obstacle=view.distance_to_obstacle,
-            distance_to_path=guide.distance_to_path,
-            cost_to_go=guide.cost_to_go,
-            margin=self.margin_at(v),
-            last=self._last,
-            v_cap=min(cap, view.speed),
-            path_weight=GIVEN_PATH_WEIGHT if target.is_given else 0.0,
-        )
-
-    def _guided(self, view: View, target: PathTarget, pose: Pose2D) -> Guide:
-        """The cost-to-go for a robot at ``pose``."""
         begin, step, _ = self.times
         encounter = Encounter(
             x=pose.x,
@@ -80,4 +65,16 @@ class Driving(Admissibility):
             step=step,
             discount=math.exp(-begin / self.config.prediction.memory),
         )
-        return self.guidance.update(view.distance_to_obstacle, target, view.moving, encounter)
+        guide = self.guidance.update(view.distance_to_obstacle, target, view.moving, encounter)
+        self.guide = guide
+        cap = self.speed_cap(pose, guide.line, self.guidance.resolution, planning_map)
+        return Scene(
+            around=self.surroundings(pose, v, view),
+            distance_to_obstacle=view.distance_to_obstacle,
+            distance_to_path=guide.distance_to_path,
+            cost_to_go=guide.cost_to_go,
+            margin=self.margin_at(v),
+            last=self._last,
+            v_cap=min(cap, view.speed),
+            path_weight=GIVEN_PATH_WEIGHT if target.is_given else 0.0,
+        )

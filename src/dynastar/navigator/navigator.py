@@ -267,7 +267,7 @@ class Navigator:
             if angle is not None:
                 driving.forget_manoeuvre()
                 command = turn_by(angle, twist, self.robot.limits, self.sensing.poses.period)
-                return command if driving.window.admits(scene, stops, command) else None
+                return command if driving.window.admits(scene.around, stops, command) else None
             if not turn.finds_place(scene, rules, pose, goal, state.stamp):
                 return None
         choice = self._choice = driving.choose(pose, twist, scene, stops)
