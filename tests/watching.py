@@ -36,7 +36,7 @@ class Watcher:
         self.local_map.follow(pose.x, pose.y)
         moving, left = self.tracker.update(view, self.known)
         for disc in left:
-            self.local_map.erase(*disc)
+            self.local_map.erase(disc)
         self.local_map.see(view, moving)
         self.local_map.update(t, np.zeros_like(self.local_map.states, bool))
         for track in self.confirmed:

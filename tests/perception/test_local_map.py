@@ -9,7 +9,7 @@ from dynastar.geometry import Pose2D
 from dynastar.perception import LocalMap, LocalMapConfig
 from dynastar.perception.local_map import SEEN_FREE, SEEN_OCCUPIED, UNSEEN
 from dynastar.perception.local_map_kernels import NEVER, mark_free
-from dynastar.perception.placed_scan import placed
+from dynastar.perception.placed_scan import Sensor, placed
 from dynastar.scan import LaserScan
 from naive import observed_free
 
@@ -257,7 +257,8 @@ def test_what_lies_between_two_beams_is_free_as_far_as_their_gap(
         sensor = (2.525, 2.525, math.pi / 2 * int(rng.integers(4)))
     free_at = np.full((100, 100), NEVER)
     angle_min = -math.radians(fov) / 2
-    mark_free(free_at, (0.05, 0.0, 0.0), gaps, (angle_min, increment), sensor, 7.0)
+    beams = angle_min, increment, n, full
+    mark_free(free_at, (0.05, 0.0, 0.0), gaps, Sensor(7.0, *sensor, *beams))
     rows, columns = np.indices(free_at.shape)
     centres = np.column_stack([columns.ravel() * 0.05 + 0.025, rows.ravel() * 0.05 + 0.025])
     free, past, at_end = observed_free(gaps, angle_min, increment, full, sensor, centres)

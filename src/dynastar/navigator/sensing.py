@@ -214,7 +214,7 @@ class Sensing:
         view = placed(scan, sensor, errors, config.local_map.narrowest)
         moving, left = self.tracker.update(view, self.planning_map.known)
         for disc in left:
-            self.local_map.erase(*disc)
+            self.local_map.erase(disc)
         self.local_map.see(view, moving)
 
 

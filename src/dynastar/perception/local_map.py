@@ -15,8 +15,7 @@ Disc = tuple[float, float, float]  # x, y, radius, m
 Indices = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
 
-UNSEEN, SEEN_FREE, SEEN_OCCUPIED = 0, 1, 2
-INSIDE = np.s_[1:-1, 1:-1]  # without the rim, which is closed
+UNSEEN, SEEN_FREE, SEEN_OCCUPIED = np.arange(3, dtype=np.uint8)  # states of a cell
 SAME = 1e-3  # cells, by which lattices may be apart that count as one
 ROUNDED = 1e-6  # relative error of a resolution that was a float32, as in ROS messages
 
@@ -53,7 +52,7 @@ class LocalMap:
         self.hit_at = np.full((n, n), kernels.NEVER)
         self.boxes = np.full((n, n), whole_cell(resolution))
         self.states = np.zeros((n, n), np.uint8)
-        self.open = np.zeros((n, n), np.uint8)
+        self.open = np.zeros((n, n), np.bool_)
         self.field, self.depth = np.zeros((n, n), np.float32), np.zeros((n, n), np.float32)
 
     @property
@@ -109,42 +108,57 @@ class LocalMap:
 
     def assume_free(self, disc: Disc, now: float, mapped: Mask) -> None:
         """Take a disc round the robot as free, but for hits and the cells ``mapped`` (n, n)."""
-        x, y, radius = disc
-        x0, y0 = self.origin
-        at = (np.arange(len(self.states)) + 0.5) * self.resolution
-        inside = np.hypot(at + (x0 - x), at[:, None] + (y0 - y)) <= radius
-        free = inside & ~mapped & (self.hit_at < now - self.config.memory)
-        self.free_at[free] = np.maximum(self.free_at[free], now)
+        box, inside = self._cells_in(disc)
+        free_at = self.free_at[box]
+        free = inside & ~mapped[box] & (self.hit_at[box] < now - self.config.memory)
+        free_at[free] = np.maximum(free_at[free], now)
 
     def keep_free(self, disc: Disc, now: float) -> None:
         """Keep the free cells in a disc round the robot from being forgotten."""
-        kernels.keep_free(self.free_at, self.hit_at, self.frame, disc, now)
+        box, inside = self._cells_in(disc)
+        free_at = self.free_at[box]
+        free_at[inside & (self.hit_at[box] < free_at) & (free_at < now)] = now
 
     def see(self, scan: PlacedScan, moving: Mask) -> None:
         """Mark what a scan shows; ``moving`` (k,) are the points not to be marked as hits."""
-        sensor, frame, now = scan.sensor, self.frame, scan.sensor.stamp
-        beams, pose = (sensor.angle_min, sensor.step), (sensor.x, sensor.y, sensor.theta)
-        kernels.mark_free(self.free_at, frame, scan.free, beams, pose, now)
+        now = scan.sensor.stamp
+        kernels.mark_free(self.free_at, self.frame, scan.free, scan.sensor)
         layers, times = (self.free_at, self.hit_at, self.boxes), (now, now - self.config.memory)
-        kernels.mark_hits(layers, frame, scan.points, moving, times)
+        kernels.mark_hits(layers, self.frame, scan.points, moving, times)
 
-    def erase(self, x: float, y: float, radius: float) -> None:
+    def erase(self, disc: Disc) -> None:
         """Forgets the hits in a disc: what was there has turned out to move."""
-        kernels.mark_disc(self.hit_at, self.frame, (x, y, radius), kernels.NEVER)
+        box, inside = self._cells_in(disc)
+        self.hit_at[box][inside] = kernels.NEVER
+
+    def _cells_in(self, disc: Disc) -> tuple[tuple[slice, slice], Mask]:
+        """A box of cells round a disc, and which of these have their centre in it."""
+        (x, y, radius), (a, x0, y0) = disc, self.frame
+        rows, columns = (
+            slice(max(0, math.floor((at - radius) / a)), max(0, math.floor((at + radius) / a) + 1))
+            for at in (y - y0, x - x0)
+        )
+        centres = (np.arange(len(self.states)) + 0.5) * a
+        dx, dy = x0 + centres[columns] - x, y0 + centres[rows, None] - y
+        return (rows, columns), dx * dx + dy * dy <= radius * radius
 
     def update(self, now: float, barred: Mask, trusted: Mask | None = None) -> None:
-        """Brings ``states``, ``open``, ``field`` and ``depth`` up to date.
+        """Brings ``states``, ``open``, ``field`` and ``depth`` up to date; the rim is never open.
 
         ``field`` and ``depth`` are metres between centres: to the nearest closed, and open cell.
         ``barred`` (n, n) are keep-out cells, which are not open though they may be free. ``trusted``
         (n, n) are open while unseen.
         """
-        horizon = now - self.config.memory
-        kernels.compose_states(self.free_at, self.hit_at, barred, horizon, self.states, self.open)
+        free_at, hit_at, horizon = self.free_at, self.hit_at, now - self.config.memory
+        free = (free_at > hit_at) & (free_at >= horizon)
+        occupied = (hit_at >= free_at) & (hit_at >= horizon)
+        self.states = free * SEEN_FREE + occupied * SEEN_OCCUPIED
+        self.open = free & ~barred
         if trusted is not None:
-            self.open[INSIDE] |= (trusted & (self.states == UNSEEN))[INSIDE]
-        self.field = lower_bounds(self.open, self.resolution)  # the rim is closed
-        self.depth = lower_bounds((self.open == 0).view(np.uint8), self.resolution)
+            self.open |= trusted & ~free & ~occupied
+        self.open[[0, -1]] = self.open[:, [0, -1]] = False
+        self.field = lower_bounds(self.open.view(np.uint8), self.resolution)
+        self.depth = lower_bounds((~self.open).view(np.uint8), self.resolution)
 
 
 def whole_cell(resolution: float) -> npt.NDArray[Any]:

@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from dynastar.clearance import inflate
 from dynastar.config import summary
+from dynastar.field import blocks
 from dynastar.grid import OccupancyGrid, Unknown
 from dynastar.masks import zone_around
 from dynastar.perception.detection import Known
@@ -77,16 +78,9 @@ class PlanningMap:
             if self.zone is None or not self.zone[cell]:
                 self._open(zone_around(self.grid, cell))
         elif self.zone is not None:
-            left = radius / self.frame.resolution
-            box = tuple(slice(max(int(at - left), 0), int(at + left) + 1) for at in (row, column))
-            away_y, away_x = (
-                np.maximum(np.abs(cells + part.start + 0.5 - at) - 0.5, 0.0)
-                for cells, part, at in zip(
-                    np.nonzero(self.zone[box]), box, (row, column), strict=True
-                )
-            )
-            away = np.hypot(away_y, away_x)
-            if away.min(initial=np.inf) >= left:
+            centres = np.argwhere(self.zone) + 0.5
+            away = np.maximum(np.abs(centres - (row, column)) - 0.5, 0.0)  # from the cells' squares
+            if np.hypot(*away.T).min() >= radius / self.frame.resolution:
                 self._open(None)
 
     def _open(self, zone: Mask | None) -> None:
@@ -122,8 +116,7 @@ class PlanningMap:
         n, m = len(local_map.states), self.merged
         found = np.full((n * m, n * m), outside)
         found[within] = mask[part]
-        rows = np.logical_or.reduce(found.reshape(n, m, n * m), axis=1)
-        return np.logical_or.reduce([rows[:, i::m] for i in range(m)])
+        return blocks(np.logical_or, found, m)
 
     def occupied_under(self, local_map: LocalMap) -> Mask:
         """Cells (n, n) of a local map that are occupied: there, on this map, or off this map."""

@@ -72,7 +72,7 @@ class StatusPublisher:
         yaw = navigator.planning_map.grid.frame.yaw
         if self._wanted("local_map"):
             occupied = navigator.planning_map.occupied_under(local)
-            values = np.where(occupied, 100, np.where(local.open > 0, 0, -1)).astype(np.int8)
+            values = np.where(occupied, 100, np.where(local.open, 0, -1)).astype(np.int8)
             cells = local.resolution, *turned_pose(Pose2D(*local.origin), yaw)
             self._publish("local_map", out.grid(values, cells, frame, now))
         guide = navigator.driving.guide
