@@ -18,15 +18,18 @@ Floats = npt.NDArray[np.float64]
 Disc = TypeVar("Disc", MovingObstacle, Track)
 
 
-def as_moving(movers: Iterable[MovingObstacle] | None) -> list[MovingObstacle] | None:
-    """Moving obstacles with floats for numbers. Raises ValueError for what is not a moving obstacle."""
+def as_moving(
+    movers: Iterable[MovingObstacle] | None, angle: float
+) -> tuple[list[MovingObstacle] | None, str | None]:
+    """Moving obstacles as floats, turned about the origin by an angle (rad), and a fault or None."""
     if movers is None:
-        return None
+        return None, None
     try:
-        return [MovingObstacle(*map(float, mover)) for mover in movers]
+        given = [MovingObstacle(*map(float, mover)) for mover in movers]
     except (TypeError, ValueError):
         words = "expected MovingObstacle(x, y, vx, vy, radius), all numbers"
-        raise ValueError(f"the moving obstacles are {movers!r:.60}: {words}") from None
+        return None, f"the moving obstacles are {movers!r:.60}: {words}"
+    return [turned_disc(one, angle) for one in given], None
 
 
 def turned(points: Floats, angle: float) -> Floats:

@@ -36,12 +36,7 @@ class StopProfile:
         """The command for the coming period, from the speeds of the moment."""
         middle = self.elapsed + 0.5 * period
         self.elapsed += period
-        if self.elapsed >= self.duration:
-            return Twist(
-                _lead(current.v, 0.0, self.limits.v_brake, period),
-                _lead(current.omega, 0.0, self.limits.omega_brake, period),
-            )
-        left = 1.0 - middle / self.duration
+        left = 0.0 if self.elapsed >= self.duration else 1.0 - middle / self.duration
         return Twist(
             _lead(current.v, self.twist.v * left, self.limits.v_brake, period),
             _lead(current.omega, self.twist.omega * left, self.limits.omega_brake, period),

@@ -21,16 +21,15 @@ class DriveCheck:
     def __init__(self, limits: Limits, period: float, latency: float) -> None:
         self._period, self._latency = period, latency  # as declared
         self._acting = LatencyCheck(limits, latency)
-        self._at: Pose2D | None = None  # where the robot was when it moved last
+        self._at = Pose2D(math.inf, math.inf)  # where the robot was when it moved last
         self._since = self._now = math.nan
         self._asked = self._asked_turn = 0.0  # m and rad since then
 
     def note(self, state: RobotState, command: Twist) -> None:
         """Take in a command given in a state."""
         self._acting.note(state, command)
-        x, y, theta = state.pose
-        moved = self._at is None or math.dist((x, y), self._at[:2]) > MOVED
-        if moved or self._at is None or abs(wrap_angle(theta - self._at.theta)) > TURNED:
+        moved = math.dist(state.pose[:2], self._at[:2]) > MOVED
+        if moved or abs(wrap_angle(state.pose.theta - self._at.theta)) > TURNED:
             self._at, self._since = state.pose, state.stamp
             self._asked = self._asked_turn = 0.0
         self._now = state.stamp

@@ -82,11 +82,7 @@ class Guard:
 
     def set_map(self, grid: OccupancyGrid | None) -> None:
         """Use another map, or none. What was seen is kept, unless the map has another yaw."""
-        planning_map = self._planning_map(grid)
-        if planning_map.grid.frame.yaw == self._map.grid.frame.yaw:
-            self.sensing.set_map(planning_map)
-        else:
-            self.sensing = Sensing(self.robot, self.config, planning_map)
+        self.sensing = self.sensing.on_map(self._planning_map(grid))
 
     def _planning_map(self, grid: OccupancyGrid | None) -> PlanningMap:
         config = self.config
@@ -101,7 +97,7 @@ class Guard:
     @property
     def hints(self) -> list[str]:
         """What has been odd about drive, odometry and lidars for some seconds."""
-        return self._commands.check.hints(self.sensing.poses) + self.sensing.hints
+        return self._commands.check.hints(self.sensing.poses) + self.sensing.feed.hints
 
     @property
     def stop(self) -> npt.NDArray[np.float64]:
@@ -151,7 +147,7 @@ class Guard:
         if refusal or tried == command:
             reason = refusal or ("acceleration" if asked == given else "speed limit")
         else:
-            reason = "; ".join(self.sensing.hints)
+            reason = "; ".join(self.sensing.feed.hints)
         return tried, reason
 
     def _within_limits(self, pose: Pose2D, given: Twist) -> Twist:

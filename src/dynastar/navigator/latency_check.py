@@ -13,9 +13,7 @@ KEPT_FOR = 6.0  # s of commands and speeds that are compared
 EVERY = 1.0  # s between two estimates
 STEP, LONGEST = 0.02, 1.0  # s, of the latencies that are tried
 LONGER = 0.05  # s by which a latency is longer than declared, at least, to be told
-BETTER = (
-    0.5  # of the error with the declared latency, from which on another one explains the speeds
-)
+BETTER = 0.5  # of the error with the declared latency, below which another latency is the true one
 CLEAR = 0.005  # of the highest speeds: the error that the declared latency leaves, at least
 
 
@@ -28,9 +26,7 @@ class LatencyCheck:
 
     def __init__(self, limits: Limits, declared: float) -> None:
         self._highest, self._declared = np.array((limits.v_max, limits.omega_max)), declared
-        self._log: deque[tuple[float, Twist, Twist]] = (
-            deque()
-        )  # stamp, measured and commanded twist
+        self._log: deque[tuple[float, Twist, Twist]] = deque()  # stamp, twist measured, commanded
         self._next = -math.inf
         self.longer: float | None = None  # the latency (s), if it is clearly longer than declared
 

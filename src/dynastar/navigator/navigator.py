@@ -75,6 +75,11 @@ class Navigator:
         return self.planning_map.grid.frame.yaw
 
     @property
+    def _goal(self) -> Goal:
+        """The goal that is driven to, in the navigator's own frame."""
+        return turned_goal(self.mission.goals[0], -self._yaw)
+
+    @property
     def planners(self) -> Planners:
         """The planners on the planning map."""
         return self.route.planners
@@ -90,7 +95,7 @@ class Navigator:
         mission, route, choice = self.mission, self.route, self._choice
         hints: list[str] = []  # of the drive and the lidars
         if mission.state not in ("idle", "arrived", "sensor_lost"):
-            hints = self._commands.check.hints(self.sensing.poses) + self.sensing.hints
+            hints = self._commands.check.hints(self.sensing.poses) + self.sensing.feed.hints
         return Status(
             state=mission.state,
             reason="; ".join([mission.reason, *hints]),
@@ -126,15 +131,11 @@ class Navigator:
         """Plan and drive on the cells of a map, none larger than ``config`` says."""
         self._grid, self.config = grid, config
         planning_map = PlanningMap(grid, config.resolution, config.unknown)
-        yaw = self._yaw
-        if grid.frame.yaw == yaw:
-            self.sensing.set_map(planning_map)
-        else:
-            self.sensing = Sensing(self.robot, config, planning_map)
-        before = self.driving
+        sensing, driving = self.sensing, self.driving
+        self.sensing = sensing.on_map(planning_map)
         self.driving = Driving(self.robot, config, self.sensing.local_map)
-        if grid.frame.yaw == yaw:
-            self.driving.carry_on(before)
+        if self.sensing is sensing:
+            self.driving.carry_on(driving)
         self.route.set_map(self._planners_on(planning_map))
 
     def _refine(self) -> None:
@@ -222,19 +223,17 @@ class Navigator:
         return self._commands.send(state, self.sensing.on_trial(state, command))
 
     def _has_arrived(self, state: RobotState, acting: tuple[Pose2D, Twist]) -> bool:
-        goal, config = turned_goal(self.mission.goals[0], -self._yaw), self.config
-        return self.route.ends_within(config.goal_tolerance) and has_arrived(
-            goal, state.pose, acting, self.robot.limits, config
+        return self.route.ends_within(self.config.goal_tolerance) and has_arrived(
+            self._goal, state.pose, acting, self.robot.limits, self.config
         )
 
     def _update_route(
         self, state: RobotState, changed: bool, movers: Sequence[MovingObstacle] | None
     ) -> None:
         """Keep, replace or drop the path, and tell the mission what that means."""
-        guide, goal = self.driving.guide, self.mission.goals[0]
-        someone = self.sensing.is_moving_at(turned_goal(goal, -self._yaw), movers)
+        guide, someone = self.driving.guide, self.sensing.is_moving_at(self._goal, movers)
         reachable = guide is not None and guide.reachable
-        event = self.route.update(state, goal, changed, reachable, someone)
+        event = self.route.update(state, self.mission.goals[0], changed, reachable, someone)
         if event.is_new:
             self.mission.error = None
             self.progress.restart(state.stamp)
@@ -258,7 +257,7 @@ class Navigator:
         view = self.sensing.view(state.stamp, movers, driving.times)
         target = self._last_turn.target(pose) or self.route.target(driving.lookahead)
         scene = driving.scene(pose, state.twist.v, view, target, self.planning_map)
-        goal = turned_goal(self.mission.goals[0], -self._yaw)
+        goal = self._goal
         at_goal = self.route.path is not None and is_near(goal, pose, self.config)
         if at_goal and goal.heading is not None:
             rules, turn = driving.window.rules, self._last_turn

@@ -113,6 +113,5 @@ class Planners:
         tolerance = self.tolerance if is_tight else self._roomy_tolerance
         if self._planner is None:
             return width.plan(start, goal, explored, planner, tolerance)
-        blocked = self.planning_map.blocked.astype(np.int8)
-        grid = OccupancyGrid(blocked * 100, self.planning_map.grid.frame)
+        grid = OccupancyGrid(self.planning_map.blocked, self.planning_map.grid.frame)
         return plan_by(self._planner, grid, start, goal, width.radius, tolerance)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from dynastar.config import shown
-from dynastar.geometry import Pose2D, Twist, compose
+from dynastar.geometry import Pose2D, compose
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.readings import Readings
 from dynastar.navigator.repeats import contradicted
@@ -88,7 +88,7 @@ class ScanFeed:
         than ``scan_age``.
         """
         accepted, fault, ahead, now = [], None, 0.0, state.stamp
-        if not is_at_rest(state.twist):
+        if max(map(abs, state.twist)) > AT_REST:
             self._moved_at = now
         for given in scans:
             if not isinstance(given, LaserScan):
@@ -139,8 +139,3 @@ class ScanFeed:
         else:
             return contradicted(scan, source.pose, pose, self._config) >= ENOUGH
         return False
-
-
-def is_at_rest(twist: Twist) -> bool:
-    """Whether a twist is that of a robot at rest."""
-    return max(abs(twist.v), abs(twist.omega)) <= AT_REST

@@ -11,7 +11,7 @@ from dynastar.clearance import lower_bounds
 from dynastar.dwa.clearance import Closed
 from dynastar.field import Field
 from dynastar.geometry import Goal, Pose2D, Twist, compose
-from dynastar.navigator.aligned import as_moving, turned_disc, turned_pose
+from dynastar.navigator.aligned import as_moving, turned_pose
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.pose_history import PoseHistory
 from dynastar.navigator.scan_feed import ScanFeed
@@ -46,14 +46,6 @@ class View(NamedTuple):
     speed: float
 
 
-class Perceived(NamedTuple):
-    """A state and moving obstacles as the navigator uses them, in its own frame, and a fault or None."""
-
-    state: RobotState
-    movers: Sequence[MovingObstacle] | None
-    fault: str | None
-
-
 class Sensing:
     """Keeps the local map and the tracks up to date, and makes a view of them."""
 
@@ -61,15 +53,18 @@ class Sensing:
         self.robot, self.config, self.planning_map = robot, config, planning_map
         self._keep(LocalMap(config.local_map, *planning_map.lattice))
         self.tracker = Tracker(config.tracker)
-        self.poses, self._feed = PoseHistory(robot.limits, config), ScanFeed(robot, config)
+        self.poses, self.feed = PoseHistory(robot.limits, config), ScanFeed(robot, config)
         self._at_start = True  # until the first scan
         self.trusts_map = False  # as of the last update
 
-    def set_map(self, planning_map: PlanningMap) -> None:
-        """Another map; the local map is moved onto its cells."""
+    def on_map(self, planning_map: PlanningMap) -> "Sensing":
+        """The sensing on another map: itself with what it has seen, unless the map has another yaw."""
+        if planning_map.grid.frame.yaw != self.planning_map.grid.frame.yaw:
+            return Sensing(self.robot, self.config, planning_map)
         self.planning_map = planning_map
         if not self.local_map.lies_on(*planning_map.lattice):
             self._keep(self.local_map.moved_onto(*planning_map.lattice))
+        return self
 
     def _keep(self, local_map: LocalMap) -> None:
         """Another local map, of which no cell is known to be clear of hidden people."""
@@ -77,42 +72,29 @@ class Sensing:
         self._hidden = HiddenSpace(n, local_map.resolution, speed, local_map.corner)
         self.local_map = local_map
 
-    @property
-    def hints(self) -> list[str]:
-        """What has been odd about the scans for some seconds, though the robot drives."""
-        return self._feed.hints
-
-    @property
-    def is_frozen(self) -> bool:
-        """Whether some lidar repeats readings that the robot's motion contradicts."""
-        return self._feed.is_frozen
-
     def perceive(
         self,
         state: RobotState,
         scan: LaserScan | Sequence[LaserScan] | None,
         movers: Sequence[MovingObstacle] | None,
         trusts_map: bool = False,
-    ) -> Perceived:
-        """Check and turn what a caller gives, and ``update``."""
+    ) -> tuple[RobotState, list[MovingObstacle] | None, str | None]:
+        """Take in what a caller gives. Returns state and movers in the own frame, and a fault or None.
+
+        ``trusts_map`` as in ``update``.
+        """
         yaw = self.planning_map.grid.frame.yaw
         state = within_limits(as_floats(state), self.robot.limits)
         state = state._replace(pose=turned_pose(state.pose, -yaw))
-        fault = self.update(state, as_scans(scan), trusts_map)
-        try:
-            movers = as_moving(movers)
-        except ValueError as error:
-            return Perceived(state, None, fault or str(error))
-        if movers is not None:
-            movers = [turned_disc(mover, -yaw) for mover in movers]
-        return Perceived(state, movers, fault)
+        moving, wrong = as_moving(movers, -yaw)
+        return state, moving, self.update(state, as_scans(scan), trusts_map) or wrong
 
     def on_trial(self, state: RobotState, command: Twist | None) -> Twist | None:
         """The command, slowed while the robot tries whether a lidar is really frozen.
 
         A faster robot brakes when its data are too old.
         """
-        if command is None or not self.is_frozen or abs(state.twist.v) >= 2.0 * TRIAL.v:
+        if command is None or not self.feed.is_frozen or abs(state.twist.v) >= 2.0 * TRIAL.v:
             return command
         return slowed(command, TRIAL)
 
@@ -132,9 +114,9 @@ class Sensing:
         if jumped:
             self.local_map.forget()
             self.tracker.forget()
-            self._feed.forget_poses()
+            self.feed.forget_poses()
         self.local_map.follow(x, y)
-        accepted, fault = self._feed.accept(scans, state, self.poses.pose_at)
+        accepted, fault = self.feed.accept(scans, state, self.poses.pose_at)
         for scan in accepted:
             self._add(scan)
         if not self._at_start:
@@ -143,7 +125,7 @@ class Sensing:
             radius = self._own_radius if self._at_start else self.robot.footprint.inscribed
             mapped = self._under(self.planning_map.grid.occupied, outside=True)
             self.local_map.assume_free((x, y, radius), now, mapped)
-        self._at_start = self._at_start and self._feed.newest == -math.inf
+        self._at_start = self._at_start and self.feed.newest == -math.inf
         self.planning_map.place_robot(x, y, self.robot.footprint.circumscribed)
         barred = self._under(self.planning_map.barred, outside=False)
         trusted = ~self._under(self.planning_map.prior, outside=True) if self.trusts_map else None
@@ -193,7 +175,7 @@ class Sensing:
         """Moving obstacles as of ``now``: those given, or those tracked."""
         if moving is not None:
             return [one for one in moving if _is_usable(one)]
-        dt = now - self._feed.newest
+        dt = now - self.feed.newest
         return [
             MovingObstacle(t.x + t.vx * dt, t.y + t.vy * dt, t.vx, t.vy, t.radius)
             for t in self.tracker.tracks
