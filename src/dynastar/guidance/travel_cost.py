@@ -54,8 +54,7 @@ def add_encounters(cost, moving, encounter):
     hypotheses, steps = moving.travel.shape
     rows, columns = cost.values.shape
     a = cost.resolution
-    for m in range(len(moving.obstacles)):
-        obstacle = moving.obstacles[m]
+    for obstacle in moving.obstacles:
         near = encounter.radius + obstacle.radius
         reach = near + REACH * moving.deviation[steps - 1]
         for h in range(hypotheses):
