@@ -89,8 +89,8 @@ def cost_to_go_to(goal, closed, radius):
 
 
 def hidden_in(distance, speed):
-    """Unseen space with ``distance`` (80, 80) to possible bodies of radius 0.25 m."""
-    return Hidden(Field(np.asarray(distance, np.float32), 0.0, 0.0, 2 * CELL), 0.25, speed, 0.1)
+    """Unseen space with ``distance`` (80, 80) to possible bodies."""
+    return Hidden(Field(np.asarray(distance, np.float32), 0.0, 0.0, 2 * CELL), speed)
 
 
 NOTHING_HIDDEN = hidden_in(np.full((SIDE // 2, SIDE // 2), 9.0), 0.0)

@@ -239,7 +239,7 @@ def test_tails_ask_for_their_speeds():
     speeds = [tail_speeds(EMPTY.cost_to_go, rules, state, 0.2, tail) for tail in TAILS]
     assert speeds[STOP] == (0.0, 0.0)
     assert speeds[BACK] == (LIMITS.v_min, 0.0)
-    assert speeds[FOLLOW] == follow(EMPTY.cost_to_go, LIMITS, rules.comfort, state, 0.2)
+    assert speeds[FOLLOW] == follow(EMPTY.cost_to_go, LIMITS, rules.config.comfort, state, 0.2)
 
 
 @pytest.mark.parametrize(

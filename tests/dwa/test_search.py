@@ -293,7 +293,7 @@ def slow_choice(rules, state, scene, choice):
                 continue
             terms = evaluate(scene, rules, start, manoeuvre, rows)
             risked = tail != FOLLOW or terms.risk > 0.0
-            total = objective(scene, rules, terms) - (0.0 if i == LAST else rules.hysteresis)
+            total = objective(scene, rules, terms) - (0.0 if i == LAST else rules.config.hysteresis)
             if total > best[0]:
                 best = total, terms
         yield ADMISSIBLE if best[1] else code, *best
@@ -329,7 +329,7 @@ def test_the_first_two_candidates_are_the_last_manoeuvre_and_to_follow_at_once()
     gap = least_clearance(scene.distance_to_obstacle, rules.body, state.pose) - scene.margin
     follow = tail_speeds(scene.cost_to_go, rules, state, gap, FOLLOW)
     back = tail_speeds(scene.cost_to_go, rules, state, gap, BACK)
-    lowest = slew(0.3, LIMITS.v_min, LIMITS.v_accel, LIMITS.v_brake, rules.reach)
+    lowest = slew(0.3, LIMITS.v_min, LIMITS.v_accel, LIMITS.v_brake, rules.config.reach)
     samples = window.choose(pose, twist, scene).samples
     assert samples[LAST] == pytest.approx((0.35, 0.2))
     assert samples[FOLLOW_NOW] == pytest.approx(follow)

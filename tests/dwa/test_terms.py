@@ -137,7 +137,7 @@ def test_dist_is_the_least_clearance_while_held_over_comfort(seed):
     random = np.random.default_rng(seed)
     rows, start = random_rows(random), random_start(random)
     gaps = [start.gap, *rows["gap"][: SCHEDULE.held]]
-    expected = min(1.0, min(gaps) / RULES.comfort)
+    expected = min(1.0, min(gaps) / RULES.config.comfort)
     assert t.dist(RULES, start, rows) == pytest.approx(expected)
 
 
@@ -162,7 +162,7 @@ def test_simi_is_one_less_the_mean_distance_from_the_path(seed):
     ("setting", "given_path", "weight"), [(0.0, 0.0, 0.0), (0.5, 0.0, 0.5), (0.5, 3.0, 3.0)]
 )
 def test_sigma_is_at_least_the_weight_of_a_path_given_by_the_user(setting, given_path, weight):
-    rules = RULES._replace(weights=Weights(simi=setting))
+    rules = RULES._replace(config=DwaConfig(Weights(simi=setting)))
     scene = SCENE._replace(path_weight=given_path)
     assert t.sigma(scene, rules) == weight
     rows, start = random_rows(np.random.default_rng(1)), random_start(np.random.default_rng(2))
@@ -223,7 +223,7 @@ def test_a_manoeuvre_passes_clear_if_no_obstacle_at_its_velocity_touches_for_so_
 )
 @settings(deadline=None)
 def test_the_objective_is_the_weighted_sum_less_the_risk(weights, terms):
-    rules = RULES._replace(weights=Weights(*weights))
+    rules = RULES._replace(config=DwaConfig(Weights(*weights)))
     signs = (1, 1, 1, 1, -1)
     expected = sum(s * w * term for s, w, term in zip(signs, weights, terms, strict=True))
     assert t.objective(SCENE, rules, t.Terms(*terms)) == pytest.approx(expected, abs=1e-9)

@@ -242,7 +242,7 @@ def test_a_preset_may_rule_out_driving_back():
     for preset, v_min in (("default", ROBOTS["paper"].limits.v_min), ("paper", 0.0)):
         navigator = Navigator(room(), ROBOTS["paper"], PRESETS[preset])
         assert navigator.robot.limits.v_min == v_min
-        assert navigator.driving.window.robot.limits.v_min == v_min
+        assert navigator.driving.window.rules.limits.v_min == v_min
 
 
 @pytest.mark.parametrize(

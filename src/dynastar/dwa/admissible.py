@@ -8,6 +8,7 @@ import math
 from dynastar.compiled import inner, njit
 from dynastar.dwa.clearance import ROUNDING, body_distance, clearance_slack, least_clearance
 from dynastar.dwa.motion import State, driven, moved, state_of, stopping_time
+from dynastar.perception.hidden import HIDDEN_RADIUS, SLACK
 
 ADMISSIBLE, NO_STOP, MOVING, HIDDEN = range(4)
 CHECK_PERIOD = 0.1  # s between two checks for moving obstacles during a stop
@@ -41,8 +42,7 @@ def refusal(around, rules, stops_from, command):
 
     The last of ``stops_from`` is the state in which the command is expected to begin to act.
     """
-    for i in range(len(stops_from)):
-        begin = stops_from[i]
+    for begin in stops_from:
         code = certified_stop(around, rules, state_of(begin), command, begin.hold)
         if code != ADMISSIBLE:
             return code
@@ -109,7 +109,7 @@ def rests_in_time(around, rules, state, command):
             done = 0.5 * stop * (1.0 - left * left)
             pose = moved(after.pose, after.v * done, after.omega * done)
         if hidden.speed > 0.0:
-            need = hidden.speed * t - hidden.slack
+            need = hidden.speed * t - SLACK
             gap = hidden_gap(hidden, body, pose, need)
             if gap < need:
                 at_start = hidden_gap(hidden, body, start, need)
@@ -127,8 +127,7 @@ def reaches(moving, body, start, pose, t):
     By the hard bound, and only if the footprint is nearer to its expected position than at ``start``.
     """
     bound = moving.error + 0.5 * moving.acceleration * t * t
-    for m in range(len(moving.obstacles)):
-        obstacle = moving.obstacles[m]
+    for obstacle in moving.obstacles:
         x, y = obstacle.x + obstacle.vx * t, obstacle.y + obstacle.vy * t
         far = body.circumscribed + obstacle.radius + bound
         if (x - pose.x) ** 2 + (y - pose.y) ** 2 < far * far:
@@ -142,4 +141,4 @@ def reaches(moving, body, start, pose, t):
 @inner
 def hidden_gap(hidden, body, pose, enough):
     """Metres from the footprint to the nearest body that unseen space may hold; exact up to ``enough``."""
-    return least_clearance(hidden.distance, body, pose, enough + hidden.radius) - hidden.radius
+    return least_clearance(hidden.distance, body, pose, enough + HIDDEN_RADIUS) - HIDDEN_RADIUS

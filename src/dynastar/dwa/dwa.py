@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from dynastar.config import shown, summary
 from dynastar.dwa import admissible
-from dynastar.dwa.config import DwaConfig, Weights
+from dynastar.dwa.config import DwaConfig
 from dynastar.dwa.motion import STOP_START, state_at
 from dynastar.dwa.nearest import nearest_admissible
 from dynastar.dwa.rollout import ROW, Schedule, schedule_of
@@ -54,24 +54,19 @@ class Body(NamedTuple):
 
 
 class Rules(NamedTuple):
-    """What does not change from tick to tick: robot, weights of Eq. 9, times, and settings.
+    """What does not change from tick to tick: robot, settings, and times.
 
     Samples are held as long as ``schedule`` says, or for ``long_hold`` (s). ``risk_radius`` (m) is
     that of the disc that stands for the robot in the risk, ``drive_error`` the fraction by which speeds
-    may be off, with ``fast_limits`` then; the other settings are those of ``DwaConfig``.
+    may be off, with ``fast_limits`` then.
     """
 
     body: Body
     limits: Limits
-    weights: Weights
+    config: DwaConfig
     schedule: Schedule
     long_hold: float
     period: float
-    reach: float
-    v_samples: int
-    omega_samples: int
-    comfort: float
-    hysteresis: float
     risk_radius: float
     drive_error: float
     fast_limits: Limits
@@ -98,15 +93,10 @@ def rules_of(robot: Robot, config: DwaConfig, period: float, drive_error: float 
     return Rules(
         body=body_of(robot),
         limits=robot.limits,
-        weights=config.weights,
+        config=config,
         schedule=schedule_of(step, held, steps, LOOKS),
         long_hold=step * max(round(LONG_HOLD / step), held),
         period=period,
-        reach=max(period, config.reach),
-        v_samples=config.v_samples,
-        omega_samples=config.omega_samples,
-        comfort=config.comfort,
-        hysteresis=config.hysteresis,
         risk_radius=0.5 * (shape.inscribed + shape.circumscribed),
         drive_error=drive_error,
         fast_limits=Limits._make((1.0 + drive_error) * limit for limit in robot.limits),
@@ -150,7 +140,6 @@ class DynamicWindow:
     def __init__(
         self, robot: Robot, config: DwaConfig, period: float, drive_error: float = 0.0
     ) -> None:
-        self.robot, self.config = robot, config
         self.rules = rules_of(robot, config, period, drive_error)
         n = (config.v_samples + 3) * (config.omega_samples + 3) + SAMPLES
         self._candidates = np.zeros(n, CANDIDATE)
@@ -158,9 +147,7 @@ class DynamicWindow:
 
     def set_period(self, period: float) -> None:
         """Commands are that far apart now (s)."""
-        if period != self.rules.period:
-            reach = max(period, self.config.reach)
-            self.rules = self.rules._replace(period=period, reach=reach)
+        self.rules = self.rules._replace(period=period)
 
     def choose(self, pose: Pose2D, twist: Twist, scene: Scene, stops: Stops = ()) -> Choice:
         """The best admissible command from ``pose`` and ``twist``.
@@ -202,7 +189,7 @@ class DynamicWindow:
         v_cap: float,
     ) -> str:
         """Name what limited the speed of a choice, "" at full speed."""
-        full_speed = FULL_SPEED * self.robot.limits.v_max
+        full_speed = FULL_SPEED * self.rules.limits.v_max
         if chosen is None:
             return "no admissible command"
         if chosen.v >= full_speed:

@@ -99,7 +99,7 @@ def follow(cost_to_go, limits, comfort, state, gap):
 def tail_speeds(cost_to_go, rules, state, gap, tail):
     """The speeds (v, omega) that a tail asks for at a state with clearance ``gap`` (m)."""
     if tail == FOLLOW:
-        return follow(cost_to_go, rules.limits, rules.comfort, state, gap)
+        return follow(cost_to_go, rules.limits, rules.config.comfort, state, gap)
     if tail == BACK:
         return rules.limits.v_min, 0.0
     return 0.0, 0.0

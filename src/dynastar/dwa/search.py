@@ -56,13 +56,12 @@ def search(scene, rules, state, stops_from, candidates, rows):
 @inner
 def fill_candidates(scene, rules, start, candidates):
     """Write speeds, holds and the commands of one period; returns the number of candidates."""
-    limits, last, state = rules.limits, scene.last, start.state
-    window = reachable(state, limits, possible(limits, min(scene.v_cap, limits.v_max)), rules.reach)
-    speeds, rates = np.empty(rules.v_samples + 3), np.empty(rules.omega_samples + 3)
-    n = SAMPLES
-    n_rates = spaced(window.low_omega, window.high_omega, rules.omega_samples, rates)
-    for v in speeds[: spaced(window.low_v, window.high_v, rules.v_samples, speeds)]:
-        for omega in rates[:n_rates]:
+    limits, config, last, state = rules.limits, rules.config, scene.last, start.state
+    speeds = possible(limits, min(scene.v_cap, limits.v_max))
+    window = reachable(state, limits, speeds, max(rules.period, config.reach))
+    rates, n = spaced(window.low_omega, window.high_omega, config.omega_samples), SAMPLES
+    for v in spaced(window.low_v, window.high_v, config.v_samples):
+        for omega in rates:
             candidates[n].v, candidates[n].omega = v, omega
             candidates[n].hold = rules.schedule.held * rules.schedule.period
             n += 1
@@ -73,8 +72,7 @@ def fill_candidates(scene, rules, start, candidates):
     v, omega = tail_speeds(scene.cost_to_go, rules, state, start.gap, FOLLOW)
     candidates[FOLLOW_NOW].v, candidates[FOLLOW_NOW].omega = v, omega
     candidates[FOLLOW_NOW].hold = rules.schedule.period
-    for i in range(n):
-        candidate = candidates[i]
+    for candidate in candidates[:n]:
         v, omega = min(max(candidate.v, window.low_v), window.high_v), candidate.omega
         v, omega = driveable(v, v, limits.v_least), driveable(omega, omega, limits.omega_least)
         candidate.v, candidate.omega = v, omega
@@ -109,7 +107,7 @@ def score(scene, rules, start, i, candidate, rows):
     if candidate.refused == MOVING:
         clear_for = scene.around.latency + rules.period
         clear_for += stopping_time(candidate.command_v, candidate.command_omega, rules.limits)
-    change = 0.0 if i == LAST else rules.hysteresis
+    change = 0.0 if i == LAST else rules.config.hysteresis
     short_hold, risked = candidate.hold, True
     for kind in range(2 * len(TAILS)):
         tail, long = kind % len(TAILS), kind >= len(TAILS)

@@ -44,7 +44,7 @@ def evaluate(scene, rules, start, manoeuvre, rows):
 @inner
 def objective(scene, rules, terms):
     """Eq. 9: G = alpha heading + beta dist + gamma vel + sigma simi - rho risk."""
-    weights = rules.weights
+    weights = rules.config.weights
     return (
         weights.heading * terms.heading
         + weights.dist * terms.dist
@@ -57,7 +57,7 @@ def objective(scene, rules, terms):
 @inner
 def sigma(scene, rules):
     """The weight of simi: that of the settings, and at least that of a path given by the user."""
-    return max(rules.weights.simi, scene.path_weight)
+    return max(rules.config.weights.simi, scene.path_weight)
 
 
 @inner
@@ -87,7 +87,7 @@ def dist(rules, start, rows):
     gap = start.gap
     for i in range(rules.schedule.held):
         gap = min(gap, rows[i].gap)
-    return min(gap, rules.comfort) / rules.comfort
+    return min(gap, rules.config.comfort) / rules.config.comfort
 
 
 @inner
@@ -109,8 +109,7 @@ def simi(distance_to_path, rules, rows):
 def risk(moving, rules, rows):
     """Risk term: the highest discounted probability of contact of each hypothesis, weighted, summed."""
     total = 0.0
-    for m in range(len(moving.obstacles)):
-        obstacle = moving.obstacles[m]
+    for obstacle in moving.obstacles:
         near = rules.risk_radius + obstacle.radius
         for h in range(len(moving.weights)):
             highest = 0.0
@@ -135,8 +134,7 @@ def passes_clear(moving, rules, rows, duration):
         if k * rules.schedule.period > duration:
             break
         travel = moving.travel[0, k - 1]
-        for m in range(len(moving.obstacles)):
-            obstacle = moving.obstacles[m]
+        for obstacle in moving.obstacles:
             dx = obstacle.x + travel * obstacle.vx - rows[i].x
             dy = obstacle.y + travel * obstacle.vy - rows[i].y
             near = rules.body.circumscribed + obstacle.radius + moving.error

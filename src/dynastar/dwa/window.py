@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from dynastar.compiled import inner
 from dynastar.dwa.motion import slew
 
@@ -35,23 +37,19 @@ def reachable(state, limits, possible, duration):
 
 
 @inner
-def spaced(low, high, count, values):
-    """Write about ``count`` values from low to high, both among them; returns how many there are.
+def spaced(low, high, count):
+    """About ``count`` values from low to high, both among them.
 
     They are denser round 0, so that slow and nearly straight motions can be told apart: away from
     zero they grow with the square. 0 is one of them where it lies between.
     """
     if high - low < 1e-9:
-        values[0] = high
-        return 1
-    largest = max(abs(low), abs(high))
-    half = count // 2
-    k = 0
-    values[k] = low
+        return np.array([high])
+    largest, half = max(abs(low), abs(high)), count // 2
+    values = [low]
     for i in range(-half, half + 1):
         value = largest * i * abs(i) / (half * half)
         if low < value < high:
-            k += 1
-            values[k] = value
-    values[k + 1] = high
-    return k + 2
+            values.append(value)
+    values.append(high)
+    return np.array(values)

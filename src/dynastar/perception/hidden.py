@@ -23,12 +23,10 @@ FACTOR = 2  # cells of the local map to one of this field
 
 
 class Hidden(NamedTuple):
-    """Distances (m) to the nearest centre of a possible body, over the local map."""
+    """Distances (m) to the nearest centre of a possible body, and how fast that may move (m/s)."""
 
     distance: Field
-    radius: float
     speed: float
-    slack: float
 
 
 class HiddenSpace:
@@ -71,7 +69,7 @@ class HiddenSpace:
         self._cleared_until[seen] = now + reach / speed
         (x0, y0), (row, column) = self._lattice_corner, corner
         field = Field(distance, x0 + column * a / FACTOR, y0 + row * a / FACTOR, a)
-        return Hidden(field, HIDDEN_RADIUS, self.speed, SLACK)
+        return Hidden(field, self.speed)
 
     def _move_to(self, corner: tuple[int, int]) -> None:
         """Moves the window to a corner in cells of the local map; what comes in is not cleared."""
