@@ -70,15 +70,13 @@ class LastTurn:
 
     def finds_place(self, scene: Scene, rules: Rules, pose: Pose2D, goal: Goal, now: float) -> bool:
         """Whether there is a place with room: the nearest to the goal. Looks every LOOK_PERIOD."""
-        if goal.heading is None or now - self._looked_at < LOOK_PERIOD:
+        if now - self._looked_at < LOOK_PERIOD:
             return self.place is not None
         self._looked_at = now
         at, reach = state_at(*pose, 0.0, 0.0).pose, self.config.goal_tolerance
         for spare in SPARES:
             need = spare, self._short_by
-            found, x, y = place_to_turn(
-                scene, rules, at, (goal.x, goal.y, goal.heading), reach, need
-            )
+            found, x, y = place_to_turn(scene, rules, at, tuple(goal), reach, need)
             self.place, self._spare = ((x, y) if found else None), ENOUGH * spare
             if found:
                 break

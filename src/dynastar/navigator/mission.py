@@ -23,12 +23,8 @@ class Mission:
     """
 
     def __init__(self) -> None:
-        self.goals: list[Goal] = []
-        self.state: State = "idle"
-        self.reason = "no goal"
-        self.error: PlanningError | None = None
         self.recoveries = 0
-        self._before: tuple[State, str] | None = None  # what it was when data were lost
+        self.begin([], "no goal")
 
     @property
     def under_way(self) -> bool:
@@ -37,8 +33,10 @@ class Mission:
 
     def begin(self, goals: Sequence[Goal], reason: str) -> None:
         """Begin a mission to ``goals``; without goals it is idle."""
-        self.goals, self.error, self._before = list(goals), None, None
-        self.state, self.reason = ("following" if self.goals else "idle"), reason
+        self.goals, self.reason = list(goals), reason
+        self.state: State = "following" if goals else "idle"
+        self.error: PlanningError | None = None
+        self._before: tuple[State, str] | None = None  # what it was when data were lost
 
     def say(self, state: State, reason: str) -> None:
         """Set the state while the mission is under way."""

@@ -25,11 +25,6 @@ class PoseHistory:
         self._limits, self._config = limits, config
         self._states: deque[RobotState] = deque()
 
-    @property
-    def pose(self) -> Pose2D:
-        """The newest pose."""
-        return self._states[-1].pose
-
     def fault(self, state: RobotState) -> str | None:
         """Describe why a state cannot be used, or None."""
         if not all(math.isfinite(number) for number in (state.stamp, *state.pose, *state.twist)):

@@ -50,22 +50,24 @@ class Route:
 
     def __init__(self, planners: Planners, config: NavigatorConfig) -> None:
         self.planners, self.config = planners, config
-        self.path: Path | None = None
-        self.s = 0.0
         self.plan: Plan | None = None
         self.plan_id, self.reason, self.replans = 0, "", 0
-        self._given: Path | None = None
+        self.waits_because = NO_PATH
+        self._stand = Path(np.zeros((1, 2)))  # where the robot waits while there is no path
+        self._is_short = False  # the path does not lead to the goal, only nearer or out of a zone
+        self._someone = False  # a moving obstacle is at the goal
+        self._planned_at = self._obstructed_at = -math.inf
+        self.start_over()
+
+    def start_over(self, given: Path | None = None) -> None:
+        """Another goal, or a path that is ``given`` and only followed."""
+        self.path: Path | None = None
+        self.s, self._given = 0.0, given
         self._planned = False  # for this goal
         self._unsure = False  # an exact search may find a shorter path
-        self._is_short = False  # the path does not lead to the goal, only nearer or out of a zone
-        self._planned_at = -math.inf
         self._no_path_since: float | None = None
         self._forgotten = 0
-        self._stand = Path(np.zeros((1, 2)))  # where the robot waits while there is no path
-        self.waits_because = NO_PATH
         self._waited = 0.0  # s, for an obstacle at the goal
-        self._obstructed_at = -math.inf
-        self._someone = False  # a moving obstacle is at the goal
 
     def set_map(self, planners: Planners) -> None:
         """Another map: the next tick plans anew."""
@@ -74,12 +76,6 @@ class Route:
     @property
     def _yaw(self) -> float:
         return self.planners.planning_map.grid.frame.yaw
-
-    def start_over(self, given: Path | None = None) -> None:
-        """Another goal, or a path that is ``given`` and only followed."""
-        self.path, self.s, self._given = None, 0.0, given
-        self._planned = self._unsure = False
-        self._no_path_since, self._forgotten, self._waited = None, 0, 0.0
 
     def drop(self) -> None:
         """Forget the path and what was sensed, so that the next tick plans anew."""
@@ -167,7 +163,7 @@ class Route:
         try:
             plan = self._plan(state, goal, self.planners.exact if is_review else "")
         except PlanningError as error:
-            if self.path is not None and is_review:
+            if is_review:
                 return KEPT
             return self._without_path(state, error)
         self._no_path_since = None

@@ -38,10 +38,6 @@ class Source:
         self.tries = 0  # to drive on though the lidar seems frozen
         self.is_tried = self.is_frozen = False
 
-    def keep(self, scan: LaserScan, pose: Pose2D) -> None:
-        """Note a scan whose readings are new."""
-        self.last, self.pose, self.tries, self.is_tried = scan, pose, 0, False
-
     def try_again(self, rest: float) -> bool:
         """Whether to drive on though the lidar seems frozen, after the robot has rested ``rest`` s."""
         wait = min(FIRST_WAIT * 2.0 ** min(self.tries, 10), LONGEST_WAIT)
@@ -133,7 +129,7 @@ class ScanFeed:
         """Whether a lidar repeats readings that the motion since it first gave them contradicts."""
         last = source.last
         if last is None or not np.array_equal(scan.ranges, last.ranges, equal_nan=True):
-            source.keep(scan, pose)
+            source.last, source.pose, source.tries, source.is_tried = scan, pose, 0, False
         elif self._moved_at <= last.stamp:  # at rest since: the pose may have been corrected
             source.pose = pose
         else:

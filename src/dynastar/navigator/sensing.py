@@ -15,8 +15,8 @@ from dynastar.navigator.aligned import as_moving, turned_pose
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.pose_history import PoseHistory
 from dynastar.navigator.scan_feed import ScanFeed
-from dynastar.navigator.status import RobotState, as_floats, slowed, within_limits
-from dynastar.perception import LocalMap, MovingObstacle, PlanningMap, Tracker
+from dynastar.navigator.status import RobotState, as_state, slowed
+from dynastar.perception import LocalMap, MovingObstacle, PlanningMap, Track, Tracker
 from dynastar.perception.hidden import Hidden, HiddenSpace
 from dynastar.perception.local_map import SEEN_OCCUPIED
 from dynastar.perception.placed_scan import placed
@@ -84,7 +84,7 @@ class Sensing:
         ``trusts_map`` as in ``update``.
         """
         yaw = self.planning_map.grid.frame.yaw
-        state = within_limits(as_floats(state), self.robot.limits)
+        state = as_state(state, self.robot.limits)
         state = state._replace(pose=turned_pose(state.pose, -yaw))
         moving, wrong = as_moving(movers, -yaw)
         return state, moving, self.update(state, as_scans(scan), trusts_map) or wrong
@@ -165,11 +165,15 @@ class Sensing:
 
     def is_moving_at(self, place: Goal, moving: Sequence[MovingObstacle] | None) -> bool:
         """Whether one of the moving obstacles, given or tracked, is within reach of a place."""
-        tracked = [track for track in self.tracker.tracks if track.state != "tentative"]
         return any(
             math.hypot(one.x - place.x, one.y - place.y) < one.radius + AT_PLACE
-            for one in (tracked if moving is None else moving)
+            for one in (self._tracked if moving is None else moving)
         )
+
+    @property
+    def _tracked(self) -> list[Track]:
+        """The tracks that move for certain, or have moved."""
+        return [track for track in self.tracker.tracks if track.state != "tentative"]
 
     def _moving(self, now: float, moving: Sequence[MovingObstacle] | None) -> list[MovingObstacle]:
         """Moving obstacles as of ``now``: those given, or those tracked."""
@@ -178,8 +182,7 @@ class Sensing:
         dt = now - self.feed.newest
         return [
             MovingObstacle(t.x + t.vx * dt, t.y + t.vy * dt, t.vx, t.vy, t.radius)
-            for t in self.tracker.tracks
-            if t.state != "tentative"
+            for t in self._tracked
         ]
 
     @property

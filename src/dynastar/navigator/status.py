@@ -30,31 +30,22 @@ class RobotState(NamedTuple):
     twist: Twist
 
 
-NO_STATE = RobotState(math.nan, Pose2D(math.nan, math.nan, math.nan), Twist(math.nan, math.nan))
-
-
-def as_floats(state: RobotState) -> RobotState:
+def as_state(state: RobotState, limits: Limits) -> RobotState:
     """The state with every number a float, all NaN if it is not a state at all.
 
-    Kernels would be compiled again for an int: ``Twist(0.1, 0)``.
+    Kernels would be compiled again for an int: ``Twist(0.1, 0)``. Speeds that the robot cannot have, as
+    a glitch of the odometry reports, count as those it can.
     """
     try:
         stamp, (x, y, theta), (v, omega) = state
         numbers = np.array((stamp, x, y, theta, v, omega), dtype=np.float64)
         stamp, x, y, theta, v, omega = numbers.tolist()
-        return RobotState(stamp, Pose2D(x, y, theta), Twist(v, omega))
     except (TypeError, ValueError, OverflowError):
-        return NO_STATE
-
-
-def within_limits(state: RobotState, limits: Limits) -> RobotState:
-    """The state without speeds that the robot cannot have, as a glitch of the odometry reports."""
-    v, omega = state.twist
-    if not (math.isfinite(v) and math.isfinite(omega)):
-        return state
-    v = min(max(v, limits.v_min), limits.v_max)
-    omega = min(max(omega, -limits.omega_max), limits.omega_max)
-    return state._replace(twist=Twist(v, omega))
+        stamp = x = y = theta = v = omega = math.nan
+    if math.isfinite(v) and math.isfinite(omega):
+        v = min(max(v, limits.v_min), limits.v_max)
+        omega = min(max(omega, -limits.omega_max), limits.omega_max)
+    return RobotState(stamp, Pose2D(x, y, theta), Twist(v, omega))
 
 
 def slowed(command: Twist, most: Twist) -> Twist:

@@ -120,8 +120,7 @@ def find_owners(points, sensor, known, space, tracks):
         behind = BEHIND / max(point.range, 1e-9)
         point.free = seen_free(point.x + behind * dx, point.y + behind * dy, space)
         nearest = 1.0  # squared distance over squared reach
-        for t in range(len(tracks)):
-            track = tracks[t]
+        for t, track in enumerate(tracks):
             reach = track.radius + (1.0 if point.free else 0.5) * track.margin
             square = (point.x - track.x) ** 2 + (point.y - track.y) ** 2
             if reach > 0.0 and square < nearest * reach * reach:

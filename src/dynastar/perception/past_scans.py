@@ -28,8 +28,7 @@ class SeenFree(NamedTuple):
 @inner
 def seen_free(x: float, y: float, space: SeenFree, since: float = -math.inf) -> bool:
     """True if the two beams on either side of (x, y) have passed it after the time ``since`` (s)."""
-    for k in range(len(space.sensors)):
-        sensor = space.sensors[k]
+    for k, sensor in enumerate(space.sensors):
         if sensor.stamp <= since:
             return False
         dx, dy = x - sensor.x, y - sensor.y

@@ -109,12 +109,10 @@ def associate(tracks, groups, now):
     in space that was seen free.
     """
     pairs, n = np.empty(len(tracks) * len(groups), PAIR), 0
-    for t in range(len(tracks)):
-        track = tracks[t]
+    for t, track in enumerate(tracks):
         gate = MARGIN + SURE * math.sqrt(track.var_x + ERROR * ERROR)
         unseen = now - track.seen > MISSED
-        for g in range(len(groups)):
-            group = groups[g]
+        for g, group in enumerate(groups):
             distance = math.hypot(group.x - track.x, group.y - track.y)
             near = distance < (max(gate, track.radius) if group.owner == t else gate)
             entered = group.free >= FREE_FRACTION
@@ -246,8 +244,7 @@ def judge(track, now, space, fastest):
 @inner
 def mark_moving(points, track, group):
     """Mark the points of a track's group and those near its disc."""
-    for i in range(len(points)):
-        point = points[i]
+    for i, point in enumerate(points):
         square = (point.x - track.x) ** 2 + (point.y - track.y) ** 2
         near = square < (track.radius + MARGIN) ** 2 and point.owner != MAPPED
         point.moving |= near or group.start <= i < group.stop
