@@ -18,7 +18,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from dynastar.io.pedestrians import load_recording
-from dynastar.perception.prediction import PredictionConfig, predict
+from dynastar.perception.prediction import WEIGHTS, PredictionConfig, predict
 from dynastar.perception.tracking import MovingObstacle
 
 Floats = npt.NDArray[np.float64]
@@ -72,7 +72,7 @@ def off(seen: Samples, ahead: float) -> tuple[Floats, Floats, Floats]:
 def model(ahead: float) -> tuple[Floats, float, Floats]:
     """Of the prediction: the hypotheses' travel (s) at a time, the deviation (m), and the weights."""
     one = predict([MovingObstacle(0.0, 0.0, 0.0, 0.0, 0.25)], PredictionConfig(), (0.0, ahead, 1))
-    return one.travel[:, 0], float(one.deviation[0]), one.weights
+    return one.travel[:, 0], float(one.deviation[0]), WEIGHTS
 
 
 def fitted(seen: Samples, ahead: float) -> tuple[Floats, float]:

@@ -14,7 +14,7 @@ from dynastar.guidance.travel_cost import (
     travel_cost,
 )
 from dynastar.perception import MovingObstacle, PredictionConfig
-from dynastar.perception.prediction import predict
+from dynastar.perception.prediction import WEIGHTS, predict
 
 A = 0.1
 CONFIG = PredictionConfig()
@@ -73,6 +73,6 @@ def test_every_cell_costs_what_all_encounters_on_arrival_do(seed):
                 gaps = np.hypot(*(mean - cell).T) - 0.3 - radius
                 p = 1.0 / (1.0 + np.exp(1.702 * gaps / moving.deviation[k]))
                 p[gaps >= 2.0 * moving.deviation[k]] = 0.0
-                discounted = math.exp(-times[k] / CONFIG.memory) * (p * moving.weights).sum()
+                discounted = math.exp(-times[k] / CONFIG.memory) * (p * WEIGHTS).sum()
                 expected += ENCOUNTER_COST * discounted
         assert cost.values[row, column] == pytest.approx(expected)

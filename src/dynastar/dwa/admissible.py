@@ -9,6 +9,7 @@ from dynastar.compiled import inner, njit
 from dynastar.dwa.clearance import ROUNDING, body_distance, clearance_slack, least_clearance
 from dynastar.dwa.motion import State, driven, moved, state_of, stopping_time
 from dynastar.perception.hidden import HIDDEN_RADIUS, SLACK
+from dynastar.perception.prediction import TRACKING_ERROR
 
 ADMISSIBLE, NO_STOP, MOVING, HIDDEN = range(4)
 CHECK_PERIOD = 0.1  # s between two checks for moving obstacles during a stop
@@ -26,14 +27,14 @@ def keeps_clear(closed, body, margin, start, pose, arc):
     length, angle = arc
     sweep = abs(length) + body.circumscribed * abs(angle)
     smallest = 0.25 * closed.distance.resolution
-    fraction = 0.0
-    slack = clearance_slack(closed, body, margin, start, pose, min(sweep, FAR_ENOUGH))
-    while -ROUNDING <= slack < (1.0 - fraction) * sweep and sweep > 0.0 and fraction < 1.0:
-        fraction = min(1.0, fraction + max(slack, smallest) / sweep)
-        at = moved(pose, fraction * length, fraction * angle)
+    fraction, at = 0.0, pose
+    while True:
         left = (1.0 - fraction) * sweep
         slack = clearance_slack(closed, body, margin, start, at, min(left, FAR_ENOUGH))
-    return slack >= -ROUNDING
+        if left <= 0.0 or not -ROUNDING <= slack < left:
+            return slack >= -ROUNDING
+        fraction = min(1.0, fraction + max(slack, smallest) / sweep)
+        at = moved(pose, fraction * length, fraction * angle)
 
 
 @inner
@@ -126,7 +127,7 @@ def reaches(moving, body, start, pose, t):
 
     By the hard bound, and only if the footprint is nearer to its expected position than at ``start``.
     """
-    bound = moving.error + 0.5 * moving.acceleration * t * t
+    bound = TRACKING_ERROR + 0.5 * moving.acceleration * t * t
     for obstacle in moving.obstacles:
         x, y = obstacle.x + obstacle.vx * t, obstacle.y + obstacle.vy * t
         far = body.circumscribed + obstacle.radius + bound

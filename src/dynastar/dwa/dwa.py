@@ -159,7 +159,6 @@ class DynamicWindow:
             scene, self.rules, state_at(*pose, *twist), stops_from, self._candidates, self._rows
         )
         candidates = self._candidates[:n].copy()
-        samples = np.column_stack([candidates["v"], candidates["omega"]])
         counts = np.bincount(candidates["refused"], minlength=max(REFUSALS) + 1)
         command, chosen, left = None, None, AT_REST
         if best >= 0:
@@ -173,20 +172,15 @@ class DynamicWindow:
             chosen,
             left,
             {words: int(counts[code]) for code, words in REFUSALS.items()},
-            samples,
+            np.column_stack([candidates["v"], candidates["omega"]]),
             candidates["refused"],
             np.column_stack([candidates[name] for name in TERMS]),
             candidates["score"],
-            self._limit(chosen, twist.v, samples, candidates["refused"], scene.v_cap),
+            self._limit(chosen, twist.v, candidates, scene.v_cap),
         )
 
     def _limit(
-        self,
-        chosen: Manoeuvre | None,
-        v: float,
-        samples: Floats,
-        refused: npt.NDArray[np.int64],
-        v_cap: float,
+        self, chosen: Manoeuvre | None, v: float, candidates: npt.NDArray[np.void], v_cap: float
     ) -> str:
         """Name what limited the speed of a choice, "" at full speed."""
         full_speed = FULL_SPEED * self.rules.limits.v_max
@@ -196,7 +190,7 @@ class DynamicWindow:
             return "" if v >= full_speed else "acceleration"
         if chosen.v >= FULL_SPEED * v_cap:
             return "speed limit"
-        codes = refused[samples[:, 0] > chosen.v + 1e-6]
+        codes = candidates["refused"][candidates["v"] > chosen.v + 1e-6]
         if len(codes) == 0:
             return "acceleration"
         return REFUSALS.get(int(np.bincount(codes).argmax()), "score")

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from dynastar.compiled import inner
 from dynastar.dwa.clearance import distance_at
 from dynastar.guidance.cost_to_go import turn_to_descent, value_at
-from dynastar.perception.prediction import contact_probability
+from dynastar.perception.prediction import TRACKING_ERROR, WEIGHTS, contact_probability
 
 LOOKS = 8  # times at which the cost-to-go is looked up along a roll-out
 OVERSHOOT = 0.25  # m that the robot may stop beyond the end of its path
@@ -111,7 +111,7 @@ def risk(moving, rules, rows):
     total = 0.0
     for obstacle in moving.obstacles:
         near = rules.risk_radius + obstacle.radius
-        for h in range(len(moving.weights)):
+        for h in range(len(WEIGHTS)):
             highest = 0.0
             for i in range(len(rows)):
                 k = rules.schedule.step[i] - 1
@@ -122,7 +122,7 @@ def risk(moving, rules, rows):
                 if square < reach * reach:
                     p = contact_probability(math.sqrt(square) - near, deviation)
                     highest = max(highest, moving.discount[k] * p)
-            total += moving.weights[h] * highest
+            total += WEIGHTS[h] * highest
     return total
 
 
@@ -137,7 +137,7 @@ def passes_clear(moving, rules, rows, duration):
         for obstacle in moving.obstacles:
             dx = obstacle.x + travel * obstacle.vx - rows[i].x
             dy = obstacle.y + travel * obstacle.vy - rows[i].y
-            near = rules.body.circumscribed + obstacle.radius + moving.error
+            near = rules.body.circumscribed + obstacle.radius + TRACKING_ERROR
             if dx * dx + dy * dy < near * near:
                 return False
     return True

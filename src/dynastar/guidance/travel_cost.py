@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from dynastar.compiled import njit
 from dynastar.field import blocks
-from dynastar.perception.prediction import contact_probability
+from dynastar.perception.prediction import WEIGHTS, contact_probability
 
 NEAR_COST = 4.0  # extra cost of a metre right at the margin of an obstacle
 ENCOUNTER_COST = 15.0  # extra cost of a metre where a moving obstacle is met for certain
@@ -80,5 +80,5 @@ def add_encounters(cost, moving, encounter):
                     square, within = dx * dx + dy * dy, near + REACH * deviation
                     if square < within * within:
                         p = contact_probability(math.sqrt(square) - near, deviation)
-                        p *= moving.weights[h] * moving.discount[k] * encounter.discount
+                        p *= WEIGHTS[h] * moving.discount[k] * encounter.discount
                         cost.values[row, column] += ENCOUNTER_COST * p

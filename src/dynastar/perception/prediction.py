@@ -18,7 +18,7 @@ from dynastar.perception.tracking import MovingObstacle
 
 Floats = npt.NDArray[np.float64]
 
-WEIGHTS = np.array([0.9, 0.08, 0.02])  # continue, stop, turn back: see docs/prediction.md
+WEIGHTS = np.array([0.9, 0.08, 0.02])  # to continue, stop, turn back: see docs/prediction.md
 STOPPING_RATE = 2.0  # 1/s at which the speed of a moving obstacle that stops decays
 OBSTACLE = np.dtype([(name, np.float64) for name in MovingObstacle._fields])
 TRACKING_ERROR = 0.05  # m, bound of the error of a tracked position
@@ -45,17 +45,15 @@ class Prediction(NamedTuple):
 
     ``obstacles`` (m,) has x, y, vx, vy and radius of each as of now. Under hypothesis h and at step k
     an obstacle is at its position plus its velocity times ``travel[h, k]`` (s), with the standard
-    deviation ``deviation[k]`` (m). ``weights[h]`` are the probabilities of the hypotheses,
-    ``discount[k]`` what a contact at step k counts. The hard bound: within t seconds an obstacle is no
-    further from its constant-velocity position than ``error`` + ``acceleration`` t^2 / 2 (m).
+    deviation ``deviation[k]`` (m). ``discount[k]`` is what a contact at step k counts. The hard bound:
+    within t seconds an obstacle is no further from its constant-velocity position than
+    TRACKING_ERROR + ``acceleration`` t^2 / 2 (m).
     """
 
     obstacles: npt.NDArray[np.void]
     travel: Floats
     deviation: Floats
-    weights: Floats
     discount: Floats
-    error: float
     acceleration: float
 
 
@@ -74,9 +72,7 @@ def predict(
         obstacles=np.array([tuple(obstacle[:5]) for obstacle in moving], OBSTACLE),
         travel=np.stack([ahead, stopping, -ahead]),
         deviation=config.error + config.spread * (1.0 - np.exp(-ahead)),
-        weights=WEIGHTS,
         discount=np.exp(-after / config.memory),
-        error=TRACKING_ERROR,
         acceleration=config.acceleration,
     )
 
