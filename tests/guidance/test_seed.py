@@ -45,8 +45,8 @@ def exit_of(points, cost, begin=0.0, end=math.inf):
     """The exit cell of a path, its arc length, and the path."""
     path = Path(np.array(points, float))
     span = begin, min(path.length, end)
-    row, column, s = path_exit_cell(path, span, cost, REACH)
-    return (row, column), s, path
+    row, column, s = path_exit_cell(path.points, path.arc, span, cost, REACH)
+    return (int(row), int(column)), float(s), path
 
 
 @given(st.integers(0, 10**6))

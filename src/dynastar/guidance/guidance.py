@@ -113,7 +113,7 @@ class Guidance:
 
     def _seed(self, target: PathTarget, cost: Field) -> tuple[int, int, float]:
         """The cell where the path leaves the local map, or ends, and the length (m) left from there."""
-        length = target.path.length
-        span = target.s, min(length, target.s + target.ahead)
-        row, column, s = path_exit_cell(target.path, span, cost, OPEN_WITHIN // 2)
-        return row, column, length - s
+        path = target.path
+        span = target.s, min(path.length, target.s + target.ahead)
+        row, column, s = path_exit_cell(path.points, path.arc, span, cost, OPEN_WITHIN // 2)
+        return row, column, path.length - s

@@ -5,8 +5,6 @@ import math
 import numpy as np
 
 from dynastar.compiled import njit
-from dynastar.field import Field
-from dynastar.path import Path
 
 RIM = 2  # cells at the border of the local map that a path has left it in
 
@@ -26,29 +24,37 @@ def nearest_open(cost, row, column, reach):
     return best_row, best_column
 
 
-def path_exit_cell(
-    path: Path, span: tuple[float, float], cost: Field, reach: int
-) -> tuple[int, int, float]:
+@njit(cache=True)
+def path_exit_cell(points, arc, span, cost, reach):
     """Last cell (row, column) of a path inside the field ``cost``, and its arc length (m).
 
-    The path is looked at every half cell over ``span`` (begin, end) in metres. The cell is that before
-    it leaves the field for the first time, moved back to the nearest one (within ``reach`` cells of the
-    path) where the robot fits.
+    ``points`` (n, 2) and ``arc`` (n,) are the path and its arc length, looked at every half cell over
+    ``span`` (begin, end) in metres. The cell is that before the path leaves the field for the first
+    time, moved back to the nearest one (within ``reach`` cells of the path) where the robot fits.
     """
-    (begin, end), arc, shape = span, path.arc, np.array(cost.values.shape)
-    count = max(2, math.ceil((end - begin) / (0.5 * cost.resolution)) + 1)
-    s = begin + (end - begin) * np.arange(count) / (count - 1)
-    before = np.searchsorted(arc[1:-1], s)  # the points of the path before and after each place
-    after = np.minimum(before + 1, len(arc) - 1)
-    fraction = np.clip((s - arc[before]) / np.maximum(arc[after] - arc[before], 1e-12), 0.0, 1.0)
-    first, second = path.points[before], path.points[after]
-    places = first + fraction[:, None] * (second - first) - (cost.x0, cost.y0)
-    cells = np.floor(places[:, ::-1] / cost.resolution).astype(np.int64)
-    inside = ((cells >= RIM) & (cells < shape - RIM)).all(axis=1)
-    last = count - 1 if inside.all() else max(int(np.argmin(inside)) - 1, 0)
-    way = np.clip(cells[: last + 1], 0, shape - 1).tolist()
+    rows, columns = cost.values.shape
+    begin, end = span
+    count = max(2, int(math.ceil((end - begin) / (0.5 * cost.resolution))) + 1)
+    cells = np.empty((count, 2), np.int64)
+    last, segment = count - 1, 0
+    for k in range(count):
+        s = begin + (end - begin) * k / (count - 1)
+        while segment < len(arc) - 2 and arc[segment + 1] < s:
+            segment += 1
+        x, y = points[segment, 0], points[segment, 1]
+        if len(arc) > 1:
+            length = max(arc[segment + 1] - arc[segment], 1e-12)
+            fraction = min(max((s - arc[segment]) / length, 0.0), 1.0)
+            x += fraction * (points[segment + 1, 0] - x)
+            y += fraction * (points[segment + 1, 1] - y)
+        row = int(math.floor((y - cost.y0) / cost.resolution))
+        column = int(math.floor((x - cost.x0) / cost.resolution))
+        cells[k, 0], cells[k, 1] = min(max(row, 0), rows - 1), min(max(column, 0), columns - 1)
+        if not (RIM <= row < rows - RIM and RIM <= column < columns - RIM):
+            last = max(k - 1, 0)
+            break
     for k in range(last, -1, -1):
-        row, column = nearest_open(cost.values, *way[k], reach)
+        row, column = nearest_open(cost.values, cells[k, 0], cells[k, 1], reach)
         if cost.values[row, column] < np.inf:
-            return row, column, float(s[k])
-    return (*way[last], float(s[last]))
+            return row, column, begin + (end - begin) * k / (count - 1)
+    return cells[last, 0], cells[last, 1], begin + (end - begin) * last / (count - 1)

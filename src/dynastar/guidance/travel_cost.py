@@ -54,7 +54,8 @@ def add_encounters(cost, moving, encounter):
     hypotheses, steps = moving.travel.shape
     rows, columns = cost.values.shape
     a = cost.resolution
-    for obstacle in moving.obstacles:
+    for m in range(len(moving.obstacles)):
+        obstacle = moving.obstacles[m]
         near = encounter.radius + obstacle.radius
         reach = near + REACH * moving.deviation[steps - 1]
         for h in range(hypotheses):
