@@ -20,6 +20,7 @@ from matplotlib.figure import Figure
 from dynastar.io.pedestrians import load_recording
 from dynastar.perception.prediction import WEIGHTS, PredictionConfig, predict
 from dynastar.perception.tracking import MovingObstacle
+from dynastar.perception.tracking_kernels import REST_SPEED
 
 Floats = npt.NDArray[np.float64]
 
@@ -27,6 +28,7 @@ RECORDINGS = "eth", "zara01", "students003"
 AHEAD = 0.5, 1.0, 1.5, 2.0, 3.0, 4.0  # s
 SPAN, EVERY = 0.5, 0.4  # s
 LEAST_SPEED = 0.4  # m/s
+SPEEDS = (0.0, REST_SPEED), (REST_SPEED, LEAST_SPEED), (LEAST_SPEED, math.inf)  # m/s
 STOPPED = 0.3  # of the way that a person who goes on covers
 NEAR = 0.55  # m between the centres of a robot of 0.3 m and a person of 0.25 m that touch
 EDGES = np.array([0.0, 0.01, 0.03, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 1.0])
@@ -42,8 +44,10 @@ class Samples(NamedTuple):
     later: Floats
 
 
-def samples(tracks: list[Floats], ahead: float) -> Samples:
-    """The samples of all tracks (k, 3) of t, x, y."""
+def samples(
+    tracks: list[Floats], ahead: float, speeds: tuple[float, float] = (LEAST_SPEED, math.inf)
+) -> Samples:
+    """The samples of all tracks (k, 3) of t, x, y, of people whose speed is in a range (m/s)."""
     found = []
     for t, x, y in (track.T for track in tracks):
         at = np.arange(t[0] + SPAN, t[-1] - ahead, EVERY)
@@ -52,8 +56,9 @@ def samples(tracks: list[Floats], ahead: float) -> Samples:
             for shift in (0.0, -SPAN, ahead)
         )
         velocity = (now - before) / SPAN
-        walks = np.hypot(*velocity.T) >= LEAST_SPEED
-        found.append(np.hstack([now, velocity, later])[walks])
+        speed = np.hypot(*velocity.T)
+        wanted = (speeds[0] <= speed) & (speed < speeds[1])
+        found.append(np.hstack([now, velocity, later])[wanted])
     return Samples(*np.split(np.vstack(found), 3, axis=1))
 
 
@@ -69,10 +74,27 @@ def off(seen: Samples, ahead: float) -> tuple[Floats, Floats, Floats]:
     return covered - speed * ahead, (moved * across).sum(axis=1), covered / (speed * ahead)
 
 
+def by_speed(tracks: list[Floats]) -> str:
+    """A table: how far people of each range of speeds are off the straight line."""
+    lines = [
+        "| speed, m/s | s ahead | people | 50 %, m | 68 % | 90 % |",
+        "|--:|--:|--:|--:|--:|--:|",
+    ]
+    for speeds in SPEEDS:
+        for ahead in (0.5, 1.0, 2.0):
+            seen = samples(tracks, ahead, speeds)
+            away = np.hypot(*(seen.later - seen.place - ahead * seen.velocity).T)
+            shares = " | ".join(f"{np.quantile(away, q):.2f}" for q in (0.5, 0.68, 0.9))
+            words = f"{speeds[0]:g} to {speeds[1]:g}"
+            lines.append(f"| {words} | {ahead:g} | {len(away)} | {shares} |")
+    return "\n".join(lines)
+
+
 def model(ahead: float) -> tuple[Floats, float, Floats]:
     """Of the prediction: the hypotheses' travel (s) at a time, the deviation (m), and the weights."""
-    one = predict([MovingObstacle(0.0, 0.0, 0.0, 0.0, 0.25)], PredictionConfig(), (0.0, ahead, 1))
-    return one.travel[:, 0], float(one.deviation[0]), WEIGHTS
+    walks = MovingObstacle(0.0, 0.0, LEAST_SPEED, 0.0, 0.25)
+    one = predict([walks], PredictionConfig(), (0.0, ahead, 1))
+    return one.travel[:, 0], float(one.deviation[0, 0]), WEIGHTS
 
 
 def fitted(seen: Samples, ahead: float) -> tuple[Floats, float]:
@@ -167,6 +189,7 @@ def main() -> None:
             shares = ", ".join(f"{weight:.3f}" for weight in weights)
             numbers = f"{len(seen.place)} | {shares} | {deviation:.2f} | {model(ahead)[1]:.2f}"
             print(f"| {ahead:g} ({word}) | {numbers} |")
+    print(by_speed(halves[0] + halves[1]))
     curves = {a: reliability(samples(halves[1], a), a, random) for a in (0.5, 1.0, 2.0, 4.0)}
     figure = Figure(figsize=(12, 3.6), layout="constrained")
     draw(list(figure.subplots(1, 3)), table, curves)

@@ -16,6 +16,7 @@ from dynastar.footprint import Footprint
 from dynastar.guidance.cost_to_go import turn_to_descent, value_at
 from dynastar.perception import MovingObstacle, PredictionConfig
 from dynastar.perception.prediction import WEIGHTS, predict
+from dynastar.perception.tracking_kernels import REST_SPEED
 from dynastar.robot import ROBOTS, Limits, Robot, slew
 from scenes import STEP, STEPS, boxed, empty, field_of, rules_for, scene_of, start_of
 
@@ -184,10 +185,11 @@ def test_risk_is_the_worst_discounted_probability_of_each_hypothesis(seed):
     places = np.column_stack([rows["x"], rows["y"]])
     after = STEP * SCHEDULE.step
     ahead = latency + after
-    deviation = config.error + config.spread * (1.0 - np.exp(-ahead))
     travels = ahead, (1.0 - np.exp(-2.0 * ahead)) / 2.0, -ahead  # continue, stop, turn back
     expected = 0.0
     for x, y, vx, vy, radius in obstacles:
+        spread = config.spread * min(math.hypot(vx, vy) / REST_SPEED, 1.0)
+        deviation = config.error + spread * (1.0 - np.exp(-ahead))
         for weight, travel in zip(WEIGHTS, travels, strict=True):
             mean = np.array([x, y]) + travel[:, None] * np.array([vx, vy])
             gaps = np.hypot(*(mean - places).T) - RULES.risk_radius - radius

@@ -68,11 +68,11 @@ def test_every_cell_costs_what_all_encounters_on_arrival_do(seed):
         arrives = math.dist(cell, place) / speed
         k, expected = int(np.argmin(abs(times - arrives))), 1.0
         if abs(times[k] - arrives) <= 0.05:
-            for x, y, vx, vy, radius in obstacles:
+            for (x, y, vx, vy, radius), deviations in zip(obstacles, moving.deviation, strict=True):
                 mean = np.array([x, y]) + moving.travel[:, k, None] * np.array([vx, vy])
                 gaps = np.hypot(*(mean - cell).T) - 0.3 - radius
-                p = 1.0 / (1.0 + np.exp(1.702 * gaps / moving.deviation[k]))
-                p[gaps >= 2.0 * moving.deviation[k]] = 0.0
+                p = 1.0 / (1.0 + np.exp(1.702 * gaps / deviations[k]))
+                p[gaps >= 2.0 * deviations[k]] = 0.0
                 discounted = math.exp(-times[k] / CONFIG.memory) * (p * WEIGHTS).sum()
                 expected += ENCOUNTER_COST * discounted
         assert cost.values[row, column] == pytest.approx(expected)

@@ -42,9 +42,17 @@ def test_an_obstacle_that_stops_comes_to_rest_half_a_second_of_way_ahead():
 def test_the_deviation_grows_to_a_limit_and_the_weights_add_up():
     moving = predict([MovingObstacle(0.0, 0.0, 1.0, 0.0, 0.3)], CONFIG, (0.2, 0.1, 30))
     ahead = 0.2 + 0.1 * np.arange(1, 31)
-    assert moving.deviation == pytest.approx(CONFIG.error + CONFIG.spread * (1.0 - np.exp(-ahead)))
+    [deviation] = moving.deviation
+    assert deviation == pytest.approx(CONFIG.error + CONFIG.spread * (1.0 - np.exp(-ahead)))
     assert WEIGHTS.sum() == pytest.approx(1.0)
     assert len(moving.travel) == len(WEIGHTS)
+
+
+@pytest.mark.parametrize(("speed", "share"), [(0.0, 0.0), (0.06, 0.5), (0.12, 1.0), (2.0, 1.0)])
+def test_the_deviation_of_an_obstacle_at_rest_does_not_grow(speed, share):
+    moving = predict([MovingObstacle(0.0, 0.0, 0.0, -speed, 0.3)], CONFIG, (0.0, 0.1, 30))
+    most = CONFIG.spread * (1.0 - math.exp(-3.0))
+    assert moving.deviation[0, -1] == pytest.approx(CONFIG.error + share * most)
 
 
 def test_risk_is_discounted_from_when_a_command_acts():

@@ -109,13 +109,13 @@ def simi(distance_to_path, rules, rows):
 def risk(moving, rules, rows):
     """Risk term: the highest discounted probability of contact of each hypothesis, weighted, summed."""
     total = 0.0
-    for obstacle in moving.obstacles:
+    for m, obstacle in enumerate(moving.obstacles):
         near = rules.risk_radius + obstacle.radius
         for h in range(len(WEIGHTS)):
             highest = 0.0
             for i in range(len(rows)):
                 k = rules.schedule.step[i] - 1
-                travel, deviation = moving.travel[h, k], moving.deviation[k]
+                travel, deviation = moving.travel[h, k], moving.deviation[m, k]
                 dx = obstacle.x + travel * obstacle.vx - rows[i].x
                 dy = obstacle.y + travel * obstacle.vy - rows[i].y
                 square, reach = dx * dx + dy * dy, near + REACH * deviation

@@ -54,10 +54,9 @@ def add_encounters(cost, moving, encounter):
     hypotheses, steps = moving.travel.shape
     rows, columns = cost.values.shape
     a = cost.resolution
-    for m in range(len(moving.obstacles)):
-        obstacle = moving.obstacles[m]
+    for m, obstacle in enumerate(moving.obstacles):
         near = encounter.radius + obstacle.radius
-        reach = near + REACH * moving.deviation[steps - 1]
+        reach = near + REACH * moving.deviation[m, steps - 1]
         for h in range(hypotheses):
             last = moving.travel[h, steps - 1]
             first_y, last_y = obstacle.y, obstacle.y + last * obstacle.vy
@@ -75,7 +74,7 @@ def add_encounters(cost, moving, encounter):
                     k = int(math.floor((arrives - encounter.begin) / encounter.step - 0.5))
                     if k < 0 or k >= steps:
                         continue
-                    travel, deviation = moving.travel[h, k], moving.deviation[k]
+                    travel, deviation = moving.travel[h, k], moving.deviation[m, k]
                     dx = obstacle.x + travel * obstacle.vx - x
                     dy = obstacle.y + travel * obstacle.vy - y
                     square, within = dx * dx + dy * dy, near + REACH * deviation

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from dynastar.compiled import inner
 from dynastar.config import Field, self_checking
 from dynastar.perception.tracking import MovingObstacle
+from dynastar.perception.tracking_kernels import REST_SPEED
 
 Floats = npt.NDArray[np.float64]
 
@@ -44,9 +45,9 @@ class Prediction(NamedTuple):
     """Predicted moving obstacles at equal steps of time, for kernels.
 
     ``obstacles`` (m,) has x, y, vx, vy and radius of each as of now. Under hypothesis h and at step k
-    an obstacle is at its position plus its velocity times ``travel[h, k]`` (s), with the standard
-    deviation ``deviation[k]`` (m). ``discount[k]`` is what a contact at step k counts. The hard bound:
-    within t seconds an obstacle is no further from its constant-velocity position than
+    obstacle m is at its position plus its velocity times ``travel[h, k]`` (s), with the standard
+    deviation ``deviation[m, k]`` (m). ``discount[k]`` is what a contact at step k counts. The hard
+    bound: within t seconds an obstacle is no further from its constant-velocity position than
     TRACKING_ERROR + ``acceleration`` t^2 / 2 (m).
     """
 
@@ -68,10 +69,13 @@ def predict(
     after = step * np.arange(1.0, steps + 1.0)
     ahead = begin + after
     stopping = (1.0 - np.exp(-STOPPING_RATE * ahead)) / STOPPING_RATE
+    obstacles = np.array([tuple(obstacle[:5]) for obstacle in moving], OBSTACLE)
+    speed = np.hypot(obstacles["vx"], obstacles["vy"])
+    spread = config.spread * np.minimum(speed / REST_SPEED, 1.0)
     return Prediction(
-        obstacles=np.array([tuple(obstacle[:5]) for obstacle in moving], OBSTACLE),
+        obstacles=obstacles,
         travel=np.stack([ahead, stopping, -ahead]),
-        deviation=config.error + config.spread * (1.0 - np.exp(-ahead)),
+        deviation=config.error + np.outer(spread, 1.0 - np.exp(-ahead)),
         discount=np.exp(-after / config.memory),
         acceleration=config.acceleration,
     )
