@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from numba import njit
 
 from dynastar.geometry import Pose2D
-from dynastar.perception.past_scans import CLOSEST, GROWTH, MEMORY, PastScans, seen_free
+from dynastar.perception.past_scans import CLOSEST, GROWTH, MEMORY, PastScans, seen_free_at
 from dynastar.perception.placed_scan import placed
 from dynastar.scan import LaserScan
 
@@ -21,7 +21,7 @@ def scan(stamp, ranges, angle_min=-math.pi, angle=math.tau, pose=HERE):
 
 @njit
 def is_free(x, y, space, since=-math.inf):
-    return seen_free(x, y, space, since)
+    return seen_free_at(x, y, space) > since
 
 
 def ahead(stamp, distance):

@@ -10,7 +10,7 @@ from dynastar.perception.local_map import SEEN_OCCUPIED
 from dynastar.perception.planning_map import PlanningMap
 from dynastar.robot import ROBOTS, Lidar
 from dynastar.simulation.lidar import LidarSimulator
-from watching import OPEN, PILLAR, Watcher
+from watching import OPEN, PILLAR, ROUND, Watcher
 
 # -- in view ---------------------------------------------------------------------------------------
 
@@ -165,6 +165,23 @@ def test_nothing_at_rest_is_confirmed_though_the_robot_drives_past_at_2_m_s():
 def box(x, y, angle):
     turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
     return np.array([(-0.3, -0.2), (0.3, -0.2), (0.3, 0.2), (-0.3, 0.2)]) @ turn + (x, y)
+
+
+@pytest.mark.parametrize(
+    ("width", "depth"), [(1.2, 1.2), (1.3, 0.4), (0.8, 0.6), (0.4, 0.4), (0.9, 0.1)]
+)
+@pytest.mark.parametrize("speed", [0.6, 2.0])
+def test_a_box_that_was_put_where_nothing_stood_does_not_move(width, depth, speed):
+    """The robot drives round it, so that its sides come into view one after the other."""
+    watcher, way = Watcher(), 2.0
+    box = 0.5 * np.array([(-width, -depth), (width, -depth), (width, depth), (-width, depth)])
+    after = LidarSimulator(ROUND, OPEN, [box], 0.01, np.random.default_rng(2))
+    for k in range(200):
+        t = k / 20
+        angle = speed * t / way
+        pose = Pose2D(way * math.cos(angle), way * math.sin(angle), angle + 0.5 * math.pi)
+        watcher.look(t, [], pose, after if t > 1.0 else None)
+    assert not watcher.ever
 
 
 @pytest.mark.parametrize("omega", [1.0, 4.0])

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from dynastar.compiled import inner, njit, record
 from dynastar.grid import GridFrame
-from dynastar.perception.past_scans import seen_free
+from dynastar.perception.past_scans import seen_free_at
 from dynastar.perception.placed_scan import PlacedScan
 
 Records = npt.NDArray[Any]
@@ -43,6 +43,7 @@ class Point:
     jump: float  # m that it is farther away than the point before; inf with no return between
     breaks: bool  # a new group starts here
     free: bool  # in space that an earlier scan showed as free
+    free_at: float  # s, when a scan did so last, or -inf
     wide: bool  # on a surface too wide for a moving obstacle
     moving: bool  # on a track that moves
 
@@ -56,6 +57,8 @@ class Group:
     x: float  # m, centre and radius of the disc
     y: float
     radius: float
+    inside_x: float  # m, a place just behind its middle point
+    inside_y: float
     free: float  # fraction of its points in space that an earlier scan showed as free
     legs: bool  # a person's leg, or two
     hidden: int  # ends hidden or cut off by the field of view: NEITHER, FIRST, LAST or BOTH
@@ -117,14 +120,21 @@ def find_owners(points, sensor, known, space, tracks):
             if known.mask[row, column]:
                 point.owner = MAPPED
                 continue
-        behind = BEHIND / max(point.range, 1e-9)
-        point.free = seen_free(point.x + behind * dx, point.y + behind * dy, space)
+        point.free_at = seen_free_at(*just_behind(point, sensor), space)
+        point.free = point.free_at > -np.inf
         nearest = 1.0  # squared distance over squared reach
         for t, track in enumerate(tracks):
             reach = track.radius + (1.0 if point.free else 0.5) * track.margin
             square = (point.x - track.x) ** 2 + (point.y - track.y) ** 2
             if reach > 0.0 and square < nearest * reach * reach:
                 point.owner, nearest = t, square / (reach * reach)
+
+
+@inner
+def just_behind(point, sensor):
+    """The place (x, y) that lies ``BEHIND`` m behind a point, as seen from the sensor."""
+    behind = BEHIND / max(point.range, 1e-9)
+    return point.x + behind * (point.x - sensor.x), point.y + behind * (point.y - sensor.y)
 
 
 @inner
@@ -197,6 +207,8 @@ def describe(group, points, sensor, tracks, widest):
         n_free += point.free
         nearest, farthest = min(nearest, point.range), max(farthest, point.range)
     group.free = n_free / (group.stop - group.start)
+    middle = points[(group.start + group.stop) // 2]
+    group.inside_x, group.inside_y = just_behind(middle, sensor)
     owned = group.owner != UNOWNED
     of_legs = owned and tracks[group.owner].legs
     radius = tracks[group.owner].radius if owned and not of_legs else 0.0

@@ -26,18 +26,16 @@ class SeenFree(NamedTuple):
 
 
 @inner
-def seen_free(x: float, y: float, space: SeenFree, since: float = -math.inf) -> bool:
-    """True if the two beams on either side of (x, y) have passed it after the time ``since`` (s)."""
+def seen_free_at(x: float, y: float, space: SeenFree) -> float:
+    """When (s) the two beams on either side of (x, y) have passed it last, -inf for never."""
     for k, sensor in enumerate(space.sensors):
-        if sensor.stamp <= since:
-            return False
         dx, dy = x - sensor.x, y - sensor.y
         turn = (math.atan2(dy, dx) - sensor.theta - sensor.angle_min) / sensor.step
         period = math.tau / abs(sensor.step)
         i = int(turn - period * math.floor(turn / period))
         if i < sensor.beams and dx * dx + dy * dy < space.ranges[k, i] * space.ranges[k, i]:
-            return True
-    return False
+            return float(sensor.stamp)
+    return -math.inf
 
 
 class PastScans:

@@ -110,7 +110,7 @@ class Tracker:
         kept = self._records[self._records["state"] != kernels.LOST]
         self._records = np.zeros(len(kept) + len(groups), kernels.TRACK)
         self._records[: len(kept)], new = kept, self._records[len(kept) :]
-        for name in ("x", "y", "radius", "free", "hidden", "legs"):
+        for name in ("x", "y", "radius", "inside_x", "inside_y", "hidden", "legs"):
             new[name] = groups[name]
         new["start_x"], new["start_y"] = groups["x"], groups["y"]
         new["var_x"] = np.where(groups["legs"], kernels.LEGS_ERROR, kernels.ERROR) ** 2

@@ -13,7 +13,7 @@ from dynastar.perception.detection import (
     UNOWNED,
     fit_disc,
 )
-from dynastar.perception.past_scans import seen_free
+from dynastar.perception.past_scans import seen_free_at
 
 TENTATIVE, CONFIRMED, STOPPED, LOST = range(4)  # states
 NO_GROUP = -1
@@ -31,7 +31,7 @@ MISSED = 0.35  # s that something in view may go undetected
 ACCELERATION = 0.1  # m2/s3, spectral density of the acceleration
 REST_SPEED = 0.12  # m/s below which a track is at rest
 REST_TIME = 1.0  # s at rest after which a track has stopped
-SMOOTHING = 0.3  # s over which the radius, ``free`` and ``misfit`` are averaged
+SMOOTHING = 0.3  # s over which the radius and ``misfit`` are averaged
 
 
 class Fields:
@@ -50,11 +50,12 @@ class Fields:
     radius: float  # m
     margin: float  # m round the disc where points are still its own, -inf for none
     measured: float  # s with both ends in view; until then the radius is assumed
-    free: float  # fraction of its points in space that an earlier scan showed as free
     legs: bool  # a person of whom the legs are seen; the radius is TYPICAL_RADIUS
     misfit: float  # mean square of its innovations, normalised
     start_x: float  # m, where it was first seen or has stopped
     start_y: float
+    inside_x: float  # m, a place just behind the first point that was seen of it
+    inside_y: float
     born: float  # s, when it was first seen, last seen, and last moved
     seen: float
     moved: float
@@ -96,7 +97,7 @@ def update(tracks, groups, points, sensor, space, config, dt):
             hide(track, dt, now, space, config.occluded_time)
         else:
             correct(track, groups[track.group], points, sensor)
-            judge(track, now, space, config.fastest)
+            judge(track, groups[track.group], points, space, now, config.fastest)
             if track.state == CONFIRMED:
                 mark_moving(points, track, groups[track.group])
 
@@ -167,8 +168,6 @@ def correct(track, group, points, sensor):
     track.cov_xv -= k_p * track.cov_xv
     track.var_x -= k_p * track.var_x
     track.hidden = group.hidden
-    gain = dt / (min(track.seen - track.born, SMOOTHING) + dt)
-    track.free += gain * (group.free - track.free)
     track.seen = sensor.stamp
 
 
@@ -206,21 +205,21 @@ def hide(track, dt, now, space, keep):
     unseen = now - track.seen
     if unseen > (MISSED if track.state == TENTATIVE else keep):
         track.state = LOST
-    elif track.state != TENTATIVE and seen_free(track.x, track.y, space, now - MISSED):
+    elif track.state != TENTATIVE and seen_free_at(track.x, track.y, space) > now - MISSED:
         track.x -= track.vx * dt
         track.y -= track.vy * dt
-        if unseen > MISSED and seen_free(track.x, track.y, space, now - MISSED):
+        if unseen > MISSED and seen_free_at(track.x, track.y, space) > now - MISSED:
             track.state = LOST
 
 
 @inner
-def judge(track, now, space, fastest):
+def judge(track, group, points, space, now, fastest):
     """Decide whether a track moves; sets its state, and ``started`` if it begins to.
 
     A track moves once its motion is steady and faster than REST_SPEED beyond doubt, and either it lies
-    in space that was seen free before, or the place where it was first seen is seen free now. Where legs
-    are seen, its centre has to be farther from the start than LEG_ERROR. It has stopped after REST_TIME
-    below that speed.
+    where space was seen free since the track began, or the place where it was seen first is seen free now.
+    Without either, another side of what stands has come into view. It has stopped after REST_TIME below
+    that speed.
     """
     speed = math.hypot(track.vx, track.vy)
     if speed > fastest:  # two obstacles taken for one
@@ -232,13 +231,20 @@ def judge(track, now, space, fastest):
             track.state, track.start_x, track.start_y = STOPPED, track.x, track.y
     elif speed > max(REST_SPEED, SURE * math.sqrt(track.var_v)) and track.misfit < FITS:
         gone = math.hypot(track.x - track.start_x, track.y - track.start_y)
-        entered = track.state == STOPPED or track.free > FREE_FRACTION
-        in_view = track.hidden == NEITHER and track.measured > STEADY
-        left = in_view and gone > max(track.radius, TYPICAL_RADIUS)
-        left = left and seen_free(track.start_x, track.start_y, space, now - MISSED)
-        enough = LEG_ERROR if track.legs else MARGIN
-        if now - track.born > STEADY and gone > enough and (entered or left):
+        entered = track.state == STOPPED or has_entered(track, group, points)
+        free_at = seen_free_at(track.inside_x, track.inside_y, space)
+        left = free_at > max(track.born, now - MISSED)
+        if now - track.born > STEADY and gone > MARGIN and (entered or left):
             track.state, track.moved, track.started = CONFIRMED, now, True
+
+
+@inner
+def has_entered(track, group, points):
+    """Whether enough of a track's points lie in space that was seen free since the track began."""
+    entered = 0
+    for point in points[group.start : group.stop]:
+        entered += point.free_at >= track.born
+    return entered >= FREE_FRACTION * (group.stop - group.start)
 
 
 @inner
