@@ -17,6 +17,7 @@ from dynastar.dwa.clearance import (
     least_clearance,
     polygon_distance,
 )
+from dynastar.dwa.dwa import SAMPLED
 from dynastar.dwa.motion import Pose
 from dynastar.footprint import Footprint
 from dynastar.perception.local_map_kernels import BOX
@@ -93,9 +94,22 @@ def test_the_least_clearance_is_that_to_the_nearest_cell_where_it_is_small(name,
     true = footprint_gaps(centres, FOOTPRINTS[name], pose).min()
     if distance_at(field, pose.x, pose.y) - shape.circumscribed > EXACT_WITHIN:
         assert found <= true + 1e-6
-    elif true > 0.0:
-        between = 0.13  # m, half of the largest distance between two probes
-        assert true - CELL <= found <= true + (0.0 if name == "disc" else between) + 1e-6
+    else:
+        assert found <= max(true, 0.0) + shape.probe_error + 1e-6
+        assert found >= true - CELL or true == 0.0
+
+
+@pytest.mark.parametrize("length", [0.5, 2.0, 4.5])
+@pytest.mark.parametrize("behind", [0.2, 1.0])
+def test_the_error_of_the_probes_is_the_most_that_a_point_inside_is_away_from_them(length, behind):
+    back = -behind * length
+    shape = Footprint.polygon([(length, -0.3), (length, 0.3), (back, 0.3), (back, -0.3)])
+    found = body_of(Robot("long", ROBOTS["paper"].limits, shape))
+    points = np.random.default_rng(0).uniform((back, -0.3), (length, 0.3), (20000, 2))
+    away = np.hypot(*points.T) - shape.inscribed
+    for probe in found.probes:
+        away = np.minimum(away, np.hypot(*(points - probe).T))
+    assert away.max() <= found.probe_error <= away.max() + 1.1 * shape.circumscribed / SAMPLED
 
 
 def random_space(random):

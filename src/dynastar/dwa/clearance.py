@@ -56,7 +56,10 @@ def distance_at(field, x, y):
 
 @inner
 def least_clearance(field, body, pose, enough=EXACT_WITHIN):
-    """Metres from the footprint to the nearest marked cell's centre; exact up to ``enough`` (m)."""
+    """Metres from the footprint to the nearest marked cell's centre.
+
+    Up to ``enough`` (m) it is too large by no more than ``body.probe_error``; beyond, a lower bound.
+    """
     distance = distance_at(field, pose.x, pose.y)
     if distance - body.circumscribed > enough:
         return distance - body.circumscribed

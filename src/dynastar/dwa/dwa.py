@@ -17,6 +17,7 @@ from dynastar.dwa.rollout import ROW, Schedule, schedule_of
 from dynastar.dwa.scene import AT_REST, Manoeuvre, Scene, Surroundings
 from dynastar.dwa.search import CANDIDATE, SAMPLES, search
 from dynastar.dwa.terms import LOOKS, Terms
+from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import Limits, Robot
 
@@ -39,18 +40,23 @@ REFUSALS = {
     admissible.HIDDEN: "unseen space",
 }
 PROBES_APART = 0.3  # m between the points that stand for a polygon's outline, at most
+SAMPLED = 50  # points from the centre to the rim of a footprint, for the error of its probes
 STEP = 0.1  # s between the points of a roll-out, at most
 LONG_HOLD = 1.5  # s that a sample is held for at the longest
 FULL_SPEED = 0.95  # of a speed limit, from which on the robot drives at it
 
 
 class Body(NamedTuple):
-    """A footprint as the kernels take it; ``probes`` (k, 2) are points of a polygon's outline (m)."""
+    """A footprint as the kernels take it; ``probes`` (k, 2) are points of a polygon's outline (m).
+
+    ``probe_error`` (m) is the most by which the clearance at the probes exceeds the footprint's.
+    """
 
     vertices: Floats
     probes: Floats
     inscribed: float
     circumscribed: float
+    probe_error: float
 
 
 class Rules(NamedTuple):
@@ -75,12 +81,34 @@ class Rules(NamedTuple):
 def body_of(robot: Robot) -> Body:
     """A robot's footprint for the kernels."""
     shape = robot.footprint
-    corners, points = shape.vertices, [shape.vertices]
+    probes = _outline(shape.vertices, PROBES_APART)
+    error = _probe_error(shape, probes)
+    return Body(shape.vertices, probes, shape.inscribed, shape.circumscribed, error)
+
+
+def _outline(corners: Floats, apart: float) -> Floats:
+    """Corners (n, 2) of a polygon and points between them (m), no farther apart than ``apart``."""
+    points = [corners]
     for corner, following in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        parts = max(2, math.ceil(math.dist(corner, following) / PROBES_APART))
+        parts = max(2, math.ceil(math.dist(corner, following) / apart))
         inside = np.linspace(0.0, 1.0, parts + 1)[1:-1, None]
         points.append(corner + inside * (following - corner))
-    return Body(corners, np.vstack(points), shape.inscribed, shape.circumscribed)
+    return np.vstack(points)
+
+
+def _probe_error(shape: Footprint, probes: Floats) -> float:
+    """The error of a body's probes (m): the largest clearance that they show of a point inside.
+
+    Outside, the clearance at the probes grows no faster than the true one. The points inside are
+    sampled, to ``apart`` (m) from each other; that is added.
+    """
+    apart = shape.circumscribed / SAMPLED
+    fractions = np.linspace(0.0, 1.0, SAMPLED + 1)[:, None, None]
+    points = (fractions * _outline(shape.vertices, apart)).reshape(-1, 2)
+    shown = np.hypot(*points.T) - shape.inscribed
+    for probe in probes:
+        np.minimum(shown, np.hypot(*(points - probe).T), out=shown)
+    return max(0.0, float(shown.max(initial=-apart)) + apart)
 
 
 def rules_of(robot: Robot, config: DwaConfig, period: float, drive_error: float = 0.0) -> Rules:

@@ -115,6 +115,9 @@ def roll_out(scene, rules, start, manoeuvre, rows):
     schedule, limits = rules.schedule, rules.limits
     obstacles, cost_to_go = scene.distance_to_obstacle, scene.cost_to_go
     state, gap = start.state, start.gap
+    near = (
+        obstacles.resolution + rules.body.probe_error
+    )  # m of gap, beyond which nothing is touched
     held = max(1, round(manoeuvre.hold / schedule.period))
     on_map, blocked, k = True, False, 0
     for i in range(len(rows)):
@@ -126,7 +129,7 @@ def roll_out(scene, rules, start, manoeuvre, rows):
             state = driven(state, v, omega, limits, schedule.duration[i])
             on_map = is_on_map(cost_to_go.value, state.pose.x, state.pose.y)
             gap = least_clearance(obstacles, rules.body, state.pose) - scene.margin
-            if on_map and gap < obstacles.resolution and touches(scene, rules, start, state.pose):
+            if on_map and gap < near and touches(scene, rules, start, state.pose):
                 if i < schedule.held:
                     return False
                 blocked = True
