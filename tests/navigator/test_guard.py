@@ -184,9 +184,19 @@ def test_bad_data_brake_and_say_why_and_good_data_go_on():
     assert "no valid range" in found[-1].reason
 
 
-def test_a_state_that_is_none_brakes():
+@pytest.mark.parametrize(
+    "state",
+    [
+        RobotState(math.nan, Pose2D(0, 0, 0), Twist(0, 0)),
+        RobotState(1.0, Pose2D(0, 0, math.inf), Twist(0, 0)),
+        RobotState(1.0, Pose2D(0, 0, 10**400), Twist(0, 0)),
+        RobotState(*np.full((1, 1), math.inf), np.ones((3, 1)), np.ones((2, 1))),
+    ],
+)  # fmt: skip
+def test_a_state_that_is_none_brakes(state):
     guard = Guard(ROUND)
-    given = guard.filter(RobotState(math.nan, Pose2D(0, 0, 0), Twist(0, 0)), None, Twist(0.3, 0.0))
+    guard.filter(RobotState(0.0, Pose2D(0, 0, 0), Twist(0, 0)), None, Twist(0.3, 0.0))
+    given = guard.filter(state, None, Twist(0.3, 0.0))
     assert given.command == Twist(0.0, 0.0)
     assert "not finite" in given.reason
     assert guard.filter(None, None, Twist(0.3, 0.0)).command == Twist(0.0, 0.0)

@@ -16,19 +16,22 @@ from dynastar.simulation.lidar import LidarSimulator
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf])
-@pytest.mark.parametrize("where", ["stamp", "pose", "twist"])
+@pytest.mark.parametrize("where", ["stamp", "pose", "heading", "twist"])
 def test_a_state_that_is_not_finite_brakes_and_says_so(where, bad):
     drive = under_way()
     stamp, pose, twist = drive.state
     state = {
         "stamp": RobotState(bad, pose, twist),
         "pose": RobotState(stamp, pose._replace(y=bad), twist),
+        "heading": RobotState(stamp, pose._replace(theta=bad), twist),
         "twist": RobotState(stamp, pose, twist._replace(omega=bad)),
     }[where]
     command = drive.navigator.command(state, drive.scan())
     assert 0.0 <= command.v < drive.twist.v
     assert drive.status.state == "sensor_lost"
     assert "not finite" in drive.status.reason
+    drive.tick()
+    assert drive.status.state == "following"
 
 
 def test_time_that_goes_back_brakes_and_goes_on_when_time_does():

@@ -45,7 +45,7 @@ def turned_pose(pose: Pose2D, angle: float) -> Pose2D:
     if angle == 0.0:
         return pose
     x, y = turned(np.array(pose[:2]), angle).tolist()
-    return Pose2D(x, y, wrap_angle(pose.theta + angle) if math.isfinite(pose.theta) else math.nan)
+    return Pose2D(x, y, wrap_angle(pose.theta + angle))
 
 
 def turned_goal(goal: Goal, angle: float) -> Goal:

@@ -8,7 +8,7 @@ from dynastar.dwa.dwa import StopStart
 from dynastar.dwa.motion import coast, state_at
 from dynastar.geometry import Pose2D, Twist
 from dynastar.navigator.drive_check import DriveCheck
-from dynastar.navigator.status import RobotState
+from dynastar.navigator.status import RobotState, is_finite
 from dynastar.robot import Limits, slew, stopping_time
 
 Acting = tuple[Pose2D, Twist]
@@ -142,9 +142,8 @@ class Commands:
 
         So it ends though the state is frozen or not finite, or the odometry reads high.
         """
-        finite = all(math.isfinite(number) for number in (state.stamp, *state.pose, *state.twist))
         twist = self._last
-        if finite:
+        if is_finite(state):
             v, omega = self.when_one_acts(state)[1]
             twist = Twist(_lesser(v, self._last.v), _lesser(omega, self._last.omega))
         command = self._stop.next(twist, self.period)
@@ -155,7 +154,8 @@ class Commands:
         self._last, now = command, state.stamp
         if not math.isfinite(now):
             return
-        self.check.note(state, command)
+        if is_finite(state):
+            self.check.note(state, command)
         self._sent.append((now, command))
         while len(self._sent) > 1 and self._sent[1][0] + self.latency <= now:
             self._sent.pop(0)

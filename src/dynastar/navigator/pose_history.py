@@ -6,7 +6,7 @@ from itertools import pairwise
 
 from dynastar.geometry import Pose2D, interpolate, wrap_angle
 from dynastar.navigator.config import NavigatorConfig
-from dynastar.navigator.status import RobotState
+from dynastar.navigator.status import RobotState, is_finite
 from dynastar.robot import Limits
 
 FARTHEST = 1e6  # m from the map's origin, where positions still tell cells apart
@@ -27,7 +27,7 @@ class PoseHistory:
 
     def fault(self, state: RobotState) -> str | None:
         """Describe why a state cannot be used, or None."""
-        if not all(math.isfinite(number) for number in (state.stamp, *state.pose, *state.twist)):
+        if not is_finite(state):
             return (
                 "the robot's state is not finite: expected a stamp, a pose and a twist of numbers"
             )

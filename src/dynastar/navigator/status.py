@@ -31,21 +31,27 @@ class RobotState(NamedTuple):
 
 
 def as_state(state: RobotState, limits: Limits) -> RobotState:
-    """The state with every number a float, all NaN if it is not a state at all.
+    """The state with every number a float; pose and twist are NaN unless all numbers are finite.
 
     Kernels would be compiled again for an int: ``Twist(0.1, 0)``. Speeds that the robot cannot have, as
     a glitch of the odometry reports, count as those it can.
     """
     try:
         stamp, (x, y, theta), (v, omega) = state
-        numbers = np.array((stamp, x, y, theta, v, omega), dtype=np.float64)
-        stamp, x, y, theta, v, omega = numbers.tolist()
+        numbers = np.array((stamp, x, y, theta, v, omega), dtype=np.float64).reshape(6)
     except (TypeError, ValueError, OverflowError):
-        stamp = x = y = theta = v = omega = math.nan
-    if math.isfinite(v) and math.isfinite(omega):
-        v = min(max(v, limits.v_min), limits.v_max)
-        omega = min(max(omega, -limits.omega_max), limits.omega_max)
+        numbers = np.full(6, math.nan)
+    if not np.isfinite(numbers).all():
+        numbers[1:] = math.nan
+    stamp, x, y, theta, v, omega = numbers.tolist()
+    v = min(max(v, limits.v_min), limits.v_max)
+    omega = min(max(omega, -limits.omega_max), limits.omega_max)
     return RobotState(stamp, Pose2D(x, y, theta), Twist(v, omega))
+
+
+def is_finite(state: RobotState) -> bool:
+    """Whether every number of a state is finite."""
+    return all(math.isfinite(number) for number in (state.stamp, *state.pose, *state.twist))
 
 
 def slowed(command: Twist, most: Twist) -> Twist:
