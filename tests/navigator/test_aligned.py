@@ -8,7 +8,14 @@ import pytest
 from driving import ROUND, Drive, room
 from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.grid import GridFrame, OccupancyGrid
-from dynastar.navigator.aligned import turned, turned_disc, turned_goal, turned_path, turned_pose
+from dynastar.navigator.aligned import (
+    as_moving,
+    turned,
+    turned_disc,
+    turned_goal,
+    turned_path,
+    turned_pose,
+)
 from dynastar.path import Path
 from dynastar.perception import MovingObstacle
 from dynastar.robot import arc
@@ -49,6 +56,13 @@ def test_turning_there_and_back_changes_nothing_and_by_nothing_is_the_same_thing
     twist = Twist(1.0, 0.5)
     there = turned_pose(arc(pose, twist, 1.0), 0.4)
     assert there == pytest.approx(arc(turned_pose(pose, 0.4), twist, 1.0))
+
+
+@pytest.mark.parametrize("yaw", [0.0, YAW])
+def test_moving_obstacles_that_cannot_be_are_left_out(yaw):
+    one = MovingObstacle(1.0, 2.0, 0.5, -0.2, 0.3)
+    odd = [one._replace(x=math.nan), one._replace(vy=math.inf), one._replace(radius=math.inf)]
+    assert as_moving([*odd, one, one._replace(radius=-0.1)], yaw) == ([turned_disc(one, yaw)], None)
 
 
 def test_goals_with_headings_are_reached_round_what_the_map_does_not_show():

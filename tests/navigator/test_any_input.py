@@ -109,6 +109,17 @@ def test_whatever_comes_in_a_finite_twist_comes_out_and_nothing_is_compiled(data
     assert signatures() == before
 
 
+@pytest.mark.parametrize(
+    "movers", [3, [3], [10**5000], [("a", "b", "c", "d", "e")], [(10**400, 0, 0, 0, 0.3)]]
+)
+def test_what_is_no_moving_obstacle_brakes_and_says_so(movers):
+    drive = under_way()
+    v = drive.twist.v
+    assert 0.0 <= drive.tick(movers=movers).v < v
+    assert drive.status.state == "sensor_lost"
+    assert "the moving obstacles are" in drive.status.reason
+
+
 footprints = st.one_of(
     st.floats(0.0, 10.0).map(Footprint.disc),
     st.tuples(*[st.floats(0.01, 6.0)] * 3).map(

@@ -10,6 +10,7 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.config import shown
 from dynastar.geometry import Goal, Pose2D, wrap_angle
 from dynastar.path import Path
 from dynastar.perception import MovingObstacle, Track
@@ -17,19 +18,30 @@ from dynastar.perception import MovingObstacle, Track
 Floats = npt.NDArray[np.float64]
 Disc = TypeVar("Disc", MovingObstacle, Track)
 
+LARGEST = MovingObstacle(1e6, 1e6, 1e3, 1e3, 1e3)  # m and m/s, of one that a caller gives
+
 
 def as_moving(
     movers: Iterable[MovingObstacle] | None, angle: float
 ) -> tuple[list[MovingObstacle] | None, str | None]:
-    """Moving obstacles as floats, turned about the origin by an angle (rad), and a fault or None."""
+    """Moving obstacles as floats, turned about the origin by an angle (rad), and a fault or None.
+
+    Those with a number that is not finite, or absurd, are left out.
+    """
     if movers is None:
         return None, None
     try:
         given = [MovingObstacle(*map(float, mover)) for mover in movers]
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         words = "expected MovingObstacle(x, y, vx, vy, radius), all numbers"
-        return None, f"the moving obstacles are {movers!r:.60}: {words}"
-    return [turned_disc(one, angle) for one in given], None
+        return None, f"the moving obstacles are {shown(movers)}: {words}"
+    return [turned_disc(one, angle) for one in given if _is_usable(one)], None
+
+
+def _is_usable(one: MovingObstacle) -> bool:
+    """Whether a moving obstacle that was given has finite numbers, none of them absurd."""
+    within = (abs(value) <= most for value, most in zip(one, LARGEST, strict=True))
+    return all(within) and one.radius >= 0.0
 
 
 def turned(points: Floats, angle: float) -> Floats:

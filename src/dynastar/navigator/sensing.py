@@ -26,7 +26,6 @@ from dynastar.scan import LaserScan, as_scans
 
 Mask = npt.NDArray[np.bool_]
 
-LARGEST = MovingObstacle(1e6, 1e6, 1e3, 1e3, 1e3)  # m and m/s, of one that a caller gives
 AT_PLACE = 0.5  # m from a moving obstacle, up to which it is at a place
 TRIAL = Twist(0.1, 0.3)  # speeds up to which the robot tries whether a lidar is really frozen
 SEEN_NOW = 0.15  # s that a cell counts as in view after it was seen
@@ -178,7 +177,7 @@ class Sensing:
     def _moving(self, now: float, moving: Sequence[MovingObstacle] | None) -> list[MovingObstacle]:
         """Moving obstacles as of ``now``: those given, or those tracked."""
         if moving is not None:
-            return [one for one in moving if _is_usable(one)]
+            return list(moving)
         dt = now - self.feed.newest
         return [
             MovingObstacle(t.x + t.vx * dt, t.y + t.vy * dt, t.vx, t.vy, t.radius)
@@ -201,9 +200,3 @@ class Sensing:
         for disc in left:
             self.local_map.erase(disc)
         self.local_map.see(view, moving)
-
-
-def _is_usable(one: MovingObstacle) -> bool:
-    """Whether a moving obstacle that was given has finite numbers, none of them absurd."""
-    within = (abs(value) <= most for value, most in zip(one, LARGEST, strict=True))
-    return all(within) and one.radius >= 0.0
