@@ -1,8 +1,10 @@
 """What is not seen is never taken as free."""
 
 import numpy as np
+import pytest
 
-from driving import LIMITS
+from driving import LIMITS, under_way, with_ranges
+from dynastar.dwa.clearance import distance_at
 from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, Twist
 from dynastar.grid import GridFrame, OccupancyGrid
@@ -34,6 +36,31 @@ def test_forgetting_frees_nothing():
     local_map = tick(2.1, 3.0)
     assert local_map.origin == origin
     assert not (local_map.open & ~before & 1).any()
+
+
+def forget(drive):
+    drive.navigator.forget()
+
+
+def jump(drive):
+    drive.pose = drive.pose._replace(y=drive.pose.y - 1.0)
+
+
+def distance_to_hidden(drive):
+    """Metres from the robot to where somebody may be, after a scan that shows only what is ahead."""
+    scan = drive.scan()
+    drive.tick(with_ranges(scan, np.where(np.cos(scan.angles) > 0.0, scan.ranges, np.nan)))
+    sensing = drive.navigator.sensing
+    x, y, _ = drive.pose
+    return distance_at(sensing.view(drive.now, None, (0.0, 0.1, 20)).hidden.distance, x, y)
+
+
+@pytest.mark.parametrize("lose", [forget, jump])
+def test_people_may_be_wherever_what_was_seen_is_forgotten(lose):
+    drive = under_way()
+    assert distance_to_hidden(drive) > 1.5
+    lose(drive)
+    assert distance_to_hidden(drive) < 0.75
 
 
 def test_a_start_at_the_edge_of_the_map_takes_nothing_beyond_it_as_free():

@@ -147,7 +147,7 @@ class Navigator:
     def forget(self) -> None:
         """Drop all that was sensed, but for the tracks."""
         self.planners.forget()
-        self.sensing.local_map.forget()
+        self.sensing.forget()
 
     def _planners_on(self, planning_map: PlanningMap) -> Planners:
         radii = radii_of(self.robot.footprint, self.margin)

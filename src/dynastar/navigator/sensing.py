@@ -71,6 +71,11 @@ class Sensing:
         self._hidden = HiddenSpace(n, local_map.resolution, speed, local_map.corner)
         self.local_map = local_map
 
+    def forget(self) -> None:
+        """Drop what was seen round the robot, but for the tracks."""
+        self.local_map.forget()
+        self._hidden.forget()
+
     def perceive(
         self,
         state: RobotState,
@@ -111,7 +116,7 @@ class Sensing:
         now, (x, y, _) = state.stamp, state.pose
         jumped = self.poses.add(state)
         if jumped:
-            self.local_map.forget()
+            self.forget()
             self.tracker.forget()
             self.feed.forget_poses()
         self.local_map.follow(x, y)
