@@ -32,6 +32,7 @@ def test_the_same_settings_change_nothing_but_the_manoeuvre_that_is_carried_on(d
     seen, plan = navigator.planning_map.seen.copy(), navigator.status.plan_id
     navigator.retune(navigator.config.dwa)
     assert (navigator.planning_map.seen == seen).all()
+    drive(world, navigator, 1)
     assert navigator.status.plan_id == plan
     assert isinstance(navigator.planning_map.grid, OccupancyGrid)
     drive(world, navigator, 300)

@@ -232,7 +232,7 @@ class Navigator:
     ) -> None:
         """Keep, replace or drop the path, and tell the mission what that means."""
         guide, someone = self.driving.guide, self.sensing.is_moving_at(self._goal, movers)
-        reachable = guide is not None and guide.reachable
+        reachable = guide is None or guide.reachable
         event = self.route.update(state, self.mission.goals[0], changed, reachable, someone)
         if event.is_new:
             self.mission.error = None
