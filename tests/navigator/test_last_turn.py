@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from driving import room
 from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, Twist
-from dynastar.grid import OccupancyGrid
+from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.navigator import Navigator, NavigatorConfig, RobotState
 from dynastar.navigator.last_turn import turn_by
 from dynastar.robot import ROBOTS, Lidar, Limits, Robot, slew
@@ -61,6 +61,28 @@ def test_a_long_robot_turns_the_long_way_round_where_the_short_one_is_shut():
     assert abs(math.remainder(world.pose.theta - 2.4, math.tau)) < 0.15
     assert math.dist(world.pose[:2], (5.0, 3.0)) <= 0.25
     assert turned > math.pi
+
+
+def test_on_a_map_of_another_yaw_a_place_to_turn_is_looked_for_anew():
+    grid, robot = OccupancyGrid(room().refined(2).values, 0.05), ROBOTS["jackal"]
+    start = Pose2D(4.0, 0.4, 0.0)
+    world = World(Scenario("turn", grid, robot, tuple(start), ()), start)
+    navigator = Navigator(grid, robot, NavigatorConfig())
+    navigator.set_goal((4.0, 0.4, 1.57))
+
+    def tick():
+        state = RobotState(world.time, world.pose, world.twist)
+        world.step(navigator.command(state, world.scan()), 0.1)
+        assert world.time < 60.0
+
+    while navigator._last_turn.place is None:
+        tick()
+    free = OccupancyGrid(np.zeros((300, 300), np.int8), GridFrame(0.1, 15.0, -15.0, 1.57))
+    navigator.set_map(free)
+    while navigator.mission.under_way:
+        tick()
+        assert math.dist(start[:2], world.pose[:2]) < 0.4
+    assert navigator.status.state == "arrived"
 
 
 def test_without_room_for_the_heading_the_mission_ends_blocked_and_says_so():

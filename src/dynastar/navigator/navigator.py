@@ -136,6 +136,9 @@ class Navigator:
         self.driving = Driving(self.robot, config, self.sensing.local_map)
         if self.sensing is sensing:
             self.driving.carry_on(driving)
+        else:  # places in the frame of the old map
+            self.progress.reset()
+            self._last_turn.reset()
         self.route.set_map(self._planners_on(planning_map))
 
     def _refine(self) -> None:
