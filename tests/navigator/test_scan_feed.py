@@ -10,8 +10,8 @@ from driving import ROUND, Drive, room, under_way, with_ranges
 from dynastar.footprint import Footprint
 from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.grid import OccupancyGrid
-from dynastar.navigator import RobotState
-from dynastar.navigator.scan_feed import FIRST_WAIT, REPEATED
+from dynastar.navigator import NavigatorConfig, RobotState
+from dynastar.navigator.scan_feed import FIRST_WAIT, REPEATED, SILENT, ScanFeed
 from dynastar.robot import Lidar
 from dynastar.simulation.lidar import LidarSimulator
 
@@ -145,6 +145,44 @@ def test_of_two_lidars_the_one_that_is_frozen_is_named_while_the_other_sees():
         reasons.add(drive.status.reason)
     assert f"the path; {REPEATED}" in reasons
     assert drive.pose.x > 1.6
+
+
+def test_a_lidar_that_was_frozen_and_is_silent_now_does_not_slow_the_robot():
+    drive = Drive(room(40.0, 6.0))
+    other = LidarSimulator(Lidar(360, math.tau, 0.0, 6.0, x=0.1), room(40.0, 6.0))
+    drive.navigator.set_goal(Goal(38.0, 3.0))
+    frozen = drive.scan().ranges
+    for k in range(40):
+        if k == 20:
+            drive.twist = Twist(0.0, 0.0)
+        drive.tick(with_ranges(drive.scan(), frozen), other.scan(drive.pose, drive.now))
+    assert 0.05 < drive.twist.v < 0.11
+    last = with_ranges(drive.scan(), frozen, stamp=drive.now - 0.1)
+    for _ in range(round(10 * SILENT) + 20):
+        drive.tick(last, other.scan(drive.pose, drive.now))
+    assert drive.twist.v > 0.8
+    assert drive.status.reason == "the path"
+
+
+def test_a_lidar_whose_mount_is_never_the_same_leaves_nothing_behind():
+    feed, scan = ScanFeed(ROUND, NavigatorConfig()), Drive(room()).scan()
+    for k in range(200):
+        now, mount = 0.1 * k, Pose2D(0.1 + 1e-6 * k, 0.0, 0.0)
+        state = RobotState(now, Pose2D(1.5, 3.0, 0.0), Twist(0.0, 0.0))
+        given = with_ranges(scan, scan.ranges, stamp=now, mount=mount)
+        accepted, fault = feed.accept([given], state, lambda stamp: Pose2D(1.5, 3.0, 0.0))
+        assert (len(accepted), fault) == (1, None)
+    assert len(feed._sources) <= 10 * SILENT + 1
+
+
+def test_a_scan_that_is_too_old_to_be_placed_is_not_used():
+    drive = Drive(room())
+    drive.navigator.set_goal(Goal(6.5, 3.0))
+    drive.now = 7.0
+    old = with_ranges(drive.scan(), drive.scan().ranges, stamp=0.0)
+    drive.tick(old)
+    assert drive.status.reason == "the scan is 7.0 s older than the robot's state"
+    assert not (drive.navigator.sensing.local_map.hit_at >= 0.0).any()
 
 
 def test_readings_of_the_robot_itself_alone_are_no_scan():

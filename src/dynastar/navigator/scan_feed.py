@@ -18,6 +18,9 @@ ENOUGH = 0.02  # of the beams contradict a scan that repeats
 AT_REST = 0.01  # m/s and rad/s up to which the robot is at rest
 FIRST_WAIT = 2.0  # s at rest before a lidar that seems frozen is tried again; doubles each time
 LONGEST_WAIT = 60.0  # s
+SILENT = (
+    5.0  # s without a newer scan, after which nothing is kept of a lidar; no less than scan_age
+)
 NO_VALID_RANGE = (
     "the scan has no valid range: its readings are NaN, beyond range_max or within the robot's own "
     "footprint (if the driver writes them for no return, add them to lidar.nothing)"
@@ -32,7 +35,8 @@ class Source:
 
     def __init__(self, robot: Robot, config: NavigatorConfig) -> None:
         self.readings = Readings(robot, config)
-        self.stamp = -math.inf  # of the newest scan that was accepted
+        self.stamp = -math.inf  # of the newest scan that was accepted,
+        self.heard = -math.inf  # and of the newest of all
         self.last: LaserScan | None = None  # the first scan with the newest readings,
         self.pose = Pose2D(0.0, 0.0, 0.0)  # and the sensor's pose then, in the map frame
         self.tries = 0  # to drive on though the lidar seems frozen
@@ -47,17 +51,16 @@ class Source:
 
 
 class ScanFeed:
-    """Checks the scans of all lidars; a lidar is told by its mount."""
+    """Checks the scans of all lidars; a lidar is told by its mount.
+
+    ``newest`` is the stamp (s) of the newest scan that was accepted, -inf if there is none.
+    """
 
     def __init__(self, robot: Robot, config: NavigatorConfig) -> None:
         self._robot, self._config = robot, config
         self._sources: dict[Pose2D, Source] = {}
         self._moved_at = -math.inf  # stamp (s) of the last state in which the robot moved
-
-    @property
-    def newest(self) -> float:
-        """Stamp (s) of the newest scan that was accepted, -inf if there is none."""
-        return max((source.stamp for source in self._sources.values()), default=-math.inf)
+        self.newest = -math.inf
 
     @property
     def is_frozen(self) -> bool:
@@ -86,6 +89,8 @@ class ScanFeed:
         accepted, fault, ahead, now = [], None, 0.0, state.stamp
         if max(map(abs, state.twist)) > AT_REST:
             self._moved_at = now
+        for mount in [at for at, one in self._sources.items() if now - one.heard > SILENT]:
+            del self._sources[mount]
         for given in scans:
             if not isinstance(given, LaserScan):
                 fault = f"a scan is {shown(given)}: expected a LaserScan"
@@ -94,6 +99,8 @@ class ScanFeed:
             if wrong is None and given.stamp > now + 0.5 * self._config.period:
                 wrong = f"the scan is {given.stamp - now:.3f} s ahead of the robot's state"
                 ahead = max(ahead, given.stamp - now)
+            if wrong is None and now - given.stamp > SILENT:
+                wrong = f"the scan is {now - given.stamp:.1f} s older than the robot's state"
             if wrong is None:
                 scan, wrong = self._news(given, now, pose_at)
                 accepted += [scan] if scan is not None else []
@@ -117,12 +124,13 @@ class ScanFeed:
         scan = source.readings.interpreted(given)
         if np.isnan(scan.ranges).all() and not (given.ranges <= given.range_min).any():
             return None, NO_VALID_RANGE
-        self._sources[given.mount] = source
+        self._sources[given.mount], source.heard = source, scan.stamp
         pose = compose(pose_at(scan.stamp), scan.mount)
         source.is_frozen = self._is_frozen(source, scan, pose)
         if source.is_frozen and not source.try_again(now - self._moved_at):
             return None, REPEATED
         source.stamp = scan.stamp
+        self.newest = max(self.newest, scan.stamp)
         return (None if source.is_frozen else scan), None
 
     def _is_frozen(self, source: Source, scan: LaserScan, pose: Pose2D) -> bool:
