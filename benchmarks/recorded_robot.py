@@ -65,8 +65,12 @@ def main() -> None:
     for seed in range(given.seed, given.seed + given.robots):
         scenario = drawn(seed)
         truth = truth_of(scenario)
+        random = np.random.default_rng((seed, 1))
+        odometry = {"noise": random.uniform(0.0, 0.005) * (random.random() < 0.5)}
+        if scenario.drive.latency_jitter == 0.0:  # which is drawn for each step of the world
+            odometry["per_command"] = int(random.choice((1, 2, 5)))
         with tempfile.TemporaryDirectory() as folder:
-            record(Path(folder) / "bag", scenario, by_hand(0.5, 1.2, **SLOW))
+            record(Path(folder) / "bag", scenario, by_hand(0.5, 1.2, **SLOW), **odometry)
             found = measured(read_drive(Path(folder) / "bag"), scenario.robot)
         for name, estimate in found.estimates.items():
             if not estimate.told:

@@ -1,5 +1,7 @@
 """A robot driven by hand in simulation, and recorded: rests, steps of both speeds, slow commands."""
 
+import numpy as np
+
 from dynastar.geometry import Twist
 from dynastar.ros.bag import BagWriter, make
 from dynastar.ros.outgoing import Messages
@@ -19,21 +21,29 @@ def by_hand(v, omega, slow_v=(), slow_omega=()):
     return script + [step for one in slow_omega for step in ((0.0, one, 1.2), (0.0, 0.0, 1.2))]
 
 
-def record(folder, scenario, script, stamped=False):
-    """Drives the script in the scenario's world, and writes scans, odometry and commands to a bag."""
-    out, world = Messages(make), World(scenario)
+def record(folder, scenario, script, stamped=False, noise=0.0, per_command=1):
+    """Drives the script in the scenario's world, and writes scans, odometry and commands to a bag.
+
+    ``noise`` (m/s, rad/s) is the standard deviation of the odometry's speeds, ``per_command`` how many
+    of its messages there are to a command. The world takes the command anew with each of them.
+    """
+    out, world, random = Messages(make), World(scenario), np.random.default_rng(scenario.seed)
     with BagWriter(folder) as bag:
         for v, omega, seconds in script:
+            command = Twist(v, omega)
             for _ in range(round(seconds / PERIOD)):
-                state, now = world.sensed_state(), world.time
-                odometry = out.odometry(state.pose, state.twist, ("odom", "base_link"), now)
-                bag.write("/odom", ODOMETRY, now, odometry)
-                bag.write("/scan", SCAN, now, out.scan(world.scan(), "laser"))
-                command = Twist(v, omega)
+                bag.write("/scan", SCAN, world.time, out.scan(world.scan(), "laser"))
                 if stamped:
-                    message = out.twist_stamped(command, "base_link", now)
-                    bag.write("/cmd_vel", "geometry_msgs/msg/TwistStamped", now, message)
+                    message = out.twist_stamped(command, "base_link", world.time)
+                    kind = "geometry_msgs/msg/TwistStamped"
                 else:
-                    bag.write("/cmd_vel", "geometry_msgs/msg/Twist", now, out.twist(command))
-                world.step(command, PERIOD)
+                    message, kind = out.twist(command), "geometry_msgs/msg/Twist"
+                for part in range(per_command):
+                    state, now = world.sensed_state(), world.time
+                    read = Twist(*(np.array(state.twist) + noise * random.normal(size=2)))
+                    odometry = out.odometry(state.pose, read, ("odom", "base_link"), now)
+                    bag.write("/odom", ODOMETRY, now, odometry)
+                    if part == 0:
+                        bag.write("/cmd_vel", kind, now, message)
+                    world.step(command, PERIOD / per_command)
                 assert not world.contact

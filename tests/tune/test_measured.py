@@ -18,6 +18,7 @@ from dynastar.simulation import Noise, Scenario
 from dynastar.simulation.imperfections import ControlLoop, Drivetrain, LidarDriver, Odometry, Post
 from dynastar.tune.measured import measured, robot_toml
 from dynastar.tune.recording import read_drive
+from dynastar.tune.response import Onset, latency
 from scripted_drive import by_hand, record
 
 pytest.importorskip("rosbags")
@@ -90,6 +91,45 @@ def test_every_parameter_is_within_its_stated_error(drives, number):
             continue
         assert estimate.told, estimate.words()
         assert estimate.low - 1e-9 <= true <= estimate.high + 1e-9, (true, estimate.words())
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_noise_of_odometry_that_comes_often_moves_no_estimate_out_of_its_range(seed, tmp_path):
+    """Between two messages the speed changes by less than the noise."""
+    scenario = replace(HARDWARE, lidar=LidarDriver(), seed=seed)
+    script = by_hand(0.5, 1.2, **SLOW)
+    record(tmp_path / "bag", scenario, script, noise=0.004, per_command=5)
+    found = measured(read_drive(tmp_path / "bag"), scenario.robot)
+    for name, true in truth_of(scenario).items():
+        estimate = found.estimates[name]
+        if estimate.told:
+            assert estimate.low - 1e-9 <= true <= estimate.high + 1e-9, (true, estimate.words())
+    untold = {name for name, estimate in found.estimates.items() if not estimate.told}
+    assert untold <= {"deadband_v", "deadband_omega"}
+
+
+def test_a_slow_command_that_noise_hides_is_no_dead_band(tmp_path):
+    record(tmp_path / "bag", PLAIN, by_hand(0.5, 1.2, **SLOW), noise=0.01)
+    found = measured(read_drive(tmp_path / "bag"), ROBOT).estimates
+    assert not found["deadband_v"].told
+    assert "no command that clearly left the robot at rest" in found["deadband_v"].evidence
+
+
+@pytest.mark.parametrize("bound", [0.1, 0.2])
+def test_a_lidar_with_large_errors_is_told(bound, tmp_path):
+    scenario = replace(PLAIN, start=(10.0, 3.0, 0.3), noise=Noise(range_bound=bound))
+    record(tmp_path / "bag", scenario, [(0.0, 0.0, 5.0)])
+    found = measured(read_drive(tmp_path / "bag"), ROBOT).estimates["range_error"]
+    assert found.low <= bound <= found.high
+
+
+def test_a_drive_that_nears_its_speed_gradually_still_tells_how_it_brakes(tmp_path):
+    scenario = replace(PLAIN, drive=Drivetrain(lag=0.1))
+    record(tmp_path / "bag", scenario, by_hand(0.5, 1.2, **SLOW), per_command=2)
+    found = measured(read_drive(tmp_path / "bag"), ROBOT).estimates
+    for name in ("v_accel", "v_brake", "omega_accel", "omega_brake"):
+        assert found[name].low > 0.8 * found[name].value
+        assert found[name].low <= truth_of(scenario)[name]
 
 
 @pytest.mark.parametrize("number", [0, 1, 2])
@@ -187,6 +227,30 @@ def test_the_command_writes_the_file_and_names_what_is_missing(drives, tmp_path,
     assert "NAME one of scan, odom, cmd_vel" in capsys.readouterr().err
     with pytest.raises(DataError, match="no such recording"):
         read_drive(tmp_path / "nothing")
+
+
+def test_what_no_robot_can_be_is_no_file(drives, tmp_path, capsys, monkeypatch):
+    """Odometry that turns the other way than commanded."""
+    from dynastar.tune import recording
+
+    drive = read_drive(drives[0][1])
+    twisted = replace(
+        drive, twists=drive.twists * (1.0, -1.0), poses=drive.poses * (1.0, 1.0, -1.0)
+    )
+    monkeypatch.setattr(recording, "read_drive", lambda path, topics: twisted)
+    out = tmp_path / "robot.toml"
+    assert main(["tune", "--bag", str(drives[0][1]), "--out", str(out)]) == 2
+    told = capsys.readouterr()
+    assert "gain_omega: -1" in told.out
+    assert f"{out} is not written" in told.err
+    assert "'drive.gain_omega' is -1.0: legal is from 0.1 to 3" in told.err
+    assert not out.exists()
+
+
+def test_a_latency_is_never_longer_than_a_motion_is_waited_for():
+    onsets = [Onset(0.02 * k, 0.02 * k + 0.03, 0.0) for k in range(48)]
+    found = latency(onsets)
+    assert 0.94 <= found.low <= found.high <= 1.0
 
 
 def test_a_step_of_the_command_is_no_motion_by_itself(drives):

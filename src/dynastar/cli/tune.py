@@ -10,7 +10,7 @@ from typing import Any
 from dynastar import io
 from dynastar.cli.outputs import check_file, make_folder
 from dynastar.cli.parsing import count, number, path, seed
-from dynastar.errors import InputError
+from dynastar.errors import InputError, ScenarioError
 from dynastar.extras import require
 
 DESCRIPTION = (
@@ -94,9 +94,14 @@ def _measure(arguments: argparse.Namespace) -> int:
     assert file is not None
     robot = None if arguments.robot is None else io.load_robot(arguments.robot)[0]
     found = measured(read_drive(arguments.bag, topic_table(arguments.topic, TOPICS)), robot)
+    print(found.words())
     with io.written_aside(file) as aside:
         aside.write_text(robot_toml(found, Path(arguments.bag).name), encoding="utf-8")
-    print(found.words())
+        try:
+            io.load_robot(aside)
+        except ScenarioError as error:
+            why = str(error).removeprefix(f"{aside}: ")
+            raise InputError(f"{file} is not written, it would not be valid: {why}") from None
     print(f"the robot is written to {file}", file=sys.stderr)
     return 0
 

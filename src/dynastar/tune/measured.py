@@ -10,10 +10,12 @@ import numpy.typing as npt
 
 from dynastar.robot import ROBOTS, Robot
 from dynastar.tune.estimate import Estimate, untold
+from dynastar.tune.ramps import accelerations
 from dynastar.tune.recording import Drive
 from dynastar.tune.response import (
+    SAME,
+    SETTLED,
     Axis,
-    accelerations,
     dead_band,
     gain,
     latency,
@@ -176,10 +178,19 @@ def _turned(poses: Floats) -> Floats:
 
 
 def _resting(drive: Drive, v: Axis, omega: Axis) -> npt.NDArray[np.bool_]:
-    """Whether the robot was at rest at each scan."""
+    """Whether the robot was at rest at each scan, and had been told so for a while.
+
+    Noise of the odometry hides a slow motion, which would pass for errors of the ranges.
+    """
     still = (np.abs(v.speeds) <= v.motion) & (np.abs(omega.speeds) <= omega.motion)
     places = np.clip(np.searchsorted(drive.times, drive.scan_times), 1, len(drive.times) - 1)
-    return np.asarray(still[places] & still[places - 1])
+    moving = np.concatenate([[0], np.cumsum(np.abs(drive.commands).max(axis=1) > SAME)])
+    begins, ends = (
+        np.searchsorted(drive.command_times, drive.scan_times - earlier, "right")
+        for earlier in (SETTLED, 0.0)
+    )
+    told = moving[ends] == moving[np.maximum(begins - 1, 0)]
+    return np.asarray(still[places] & still[places - 1] & told)
 
 
 def _period(drive: Drive) -> Estimate:

@@ -1,4 +1,4 @@
-"""How a drive responds: gain, latency, accelerations and dead band, from commands and odometry.
+"""How a drive responds: gain, latency and dead band, from commands and odometry.
 
 Each speed is treated on its own. A *stretch* is a time in which its command does not change.
 """
@@ -17,6 +17,7 @@ Floats = npt.NDArray[np.float64]
 
 SETTLED = 1.0  # s after which a speed has followed a command that did not change
 CLEAR = 5.0  # standard deviations of the odometry's noise that are a motion
+CERTAIN = 3.0  # such motions, from which on a ramp is told well enough to tell where it began
 RESOLUTION = 1e-3  # of the largest speed, below which nothing is a motion
 SAME = 1e-6  # m/s or rad/s between commands that are the same
 ONSET = 1.0  # s within which a command must take effect
@@ -80,7 +81,7 @@ def gain(axis: Axis) -> Estimate:
                 ratios.append(mean / command)
                 errors.append(axis.noise / abs(command) / len(part) ** 0.5)
     if len(ratios) < FEWEST:
-        return untold(name, "", _lack(len(ratios), "steady speeds of 1 s or more"), len(ratios))
+        return untold(name, "", lack(len(ratios), "steady speeds of 1 s or more"), len(ratios))
     value = float(np.median(ratios))
     error = ERRORS * (_error_of_median(ratios) + float(np.median(errors)))
     error = max(error, ROUNDING * abs(value))
@@ -106,7 +107,7 @@ def latency(onsets: Sequence[Onset]) -> Estimate:
     The change lies between two messages of the odometry, so each gives a lower and an upper bound.
     """
     if len(onsets) < FEWEST:
-        why = _lack(len(onsets), "changes of the command after a steady second")
+        why = lack(len(onsets), "changes of the command after a steady second")
         return untold("latency", "s", why, len(onsets))
     lower, upper, unseen = np.array([(one.lower, one.upper, one.unseen) for one in onsets]).T
     low = max(float((lower - unseen).max()), 0.0)
@@ -115,7 +116,8 @@ def latency(onsets: Sequence[Onset]) -> Estimate:
     else:
         spread = float(lower.max() - lower.min())
         high = float(upper.max()) + spread * (CONFIDENCE ** (-1.0 / len(onsets)) - 1.0)
-        what = f"it varies by about {spread:.2g} s, this is the longest"
+        what = f"it varies by up to {spread:.2g} s, this is the longest"
+    high = min(high, ONSET)
     evidence = f"time from a change of the command to that of the odometry; {what}"
     return Estimate("latency", "s", 0.5 * (low + high), low, high, len(onsets), evidence)
 
@@ -135,75 +137,13 @@ def onsets_of(axis: Axis) -> list[Onset]:
         until = end + ONSET if abs(steady) > axis.motion else min(end + ONSET, following)
         later = np.flatnonzero((axis.times > end) & (axis.times <= until))
         apart = np.abs(axis.speeds[later] - steady)
-        if apart.max(initial=0.0) > axis.motion and later[0] > 0:
-            place = int(np.argmax(apart > axis.motion))
-            first = int(later[place])
+        if apart.max(initial=0.0) > CERTAIN * axis.motion and later[0] > 0:
+            first = int(later[np.argmax(apart > axis.motion)])
             lower, upper = axis.times[[first - 1, first]] - end
-            unseen = (upper - lower) * axis.motion / max(apart[place] - axis.motion, 1e-9)
-            found.append(Onset(float(lower), float(upper), float(unseen)))
+            place = int(np.argmax(apart > CERTAIN * axis.motion))
+            slope = (apart[place] - axis.motion) / (axis.times[later[place]] - end - lower)
+            found.append(Onset(float(lower), float(upper), float(2.0 * axis.motion / slope)))
     return found
-
-
-def accelerations(
-    axis: Axis, response: Estimate, delays: tuple[float, float] | None
-) -> tuple[Estimate, Estimate]:
-    """Acceleration and braking while the drive could not yet follow its command.
-
-    ``response`` is the gain, ``delays`` the least and the longest latency. The stated range is that of the
-    single ramps.
-    """
-    names = f"{axis.name}_accel", f"{axis.name}_brake"
-    unit = f"{axis.unit}2"
-    if delays is None or response.value is None:
-        both = [untold(name, unit, "it needs latency and gain") for name in names]
-        return both[0], both[1]
-    ramps: dict[str, list[list[float]]] = {name: [] for name in names}
-    kind, last = "", -2
-    for k in range(len(axis.times) - 1):
-        now = _ramp(axis, k, response.value, delays)
-        if now:
-            name = names[now == "brake"]
-            if now != kind or last != k - 1:
-                ramps[name].append([])
-            step = axis.speeds[k + 1] - axis.speeds[k]
-            ramps[name][-1].append(abs(step) / (axis.times[k + 1] - axis.times[k]))
-            kind, last = now, k
-    return _slope(names[0], unit, ramps[names[0]], axis), _slope(
-        names[1], unit, ramps[names[1]], axis
-    )
-
-
-def _ramp(axis: Axis, k: int, scale: float, delays: tuple[float, float]) -> str:
-    """Whether the drive sped up or braked as fast as it can between two messages, or neither."""
-    before, after = axis.speeds[k], axis.speeds[k + 1]
-    least, longest = delays
-    first = np.searchsorted(axis.command_times, axis.times[k] - longest, "right") - 1
-    last = np.searchsorted(axis.command_times, axis.times[k + 1] - least, "right")
-    if first < 0:
-        return ""
-    aims = scale * axis.commands[first:last]
-    up = after > before
-    left = aims - after if up else after - aims
-    if abs(after - before) <= axis.motion or left.min() <= axis.motion:
-        return ""
-    if before * after < 0.0:
-        return ""
-    return "accel" if abs(after) > abs(before) else "brake"
-
-
-def _slope(name: str, unit: str, ramps: Sequence[Sequence[float]], axis: Axis) -> Estimate:
-    means = [float(np.mean(ramp)) for ramp in ramps]
-    if len(means) < FEWEST:
-        step = np.diff(axis.speeds) / np.diff(axis.times)
-        rising = np.abs(axis.speeds[1:]) > np.abs(axis.speeds[:-1])
-        seen = np.abs(step[rising if name.endswith("accel") else ~rising])
-        most = float(seen.max()) if len(seen) else 0.0
-        why = _lack(len(means), "ramps in which the command was ahead of the drive")
-        return untold(name, unit, f"{why}; at least {most:.3g} {unit} was seen", len(means))
-    value, error = float(np.median(means)), ROUNDING * float(np.median(means))
-    low, high = min(means) - error, max(means) + error
-    evidence = "slope of the odometry's speed while the command was ahead of it"
-    return Estimate(name, unit, value, low, high, len(means), evidence)
 
 
 def dead_band(axis: Axis, delay: Estimate) -> Estimate:
@@ -217,13 +157,19 @@ def dead_band(axis: Axis, delay: Estimate) -> Estimate:
         within = axis.speeds[(axis.times > wait) & (axis.times <= end)]
         still = len(before) > 0 and np.abs(before).max() <= axis.motion
         if abs(command) > SAME and still and len(within) > 2:
-            (moved if np.abs(within).max() > axis.motion else stood).append(abs(command))
+            if np.abs(within).max() > axis.motion:
+                moved.append(abs(command))
+            elif abs(command) > 2.0 * axis.motion:  # else noise may hide the motion
+                stood.append(abs(command))
     if not moved:
         return untold(name, axis.unit, "it has no command that moved a robot at rest", len(stood))
     least = min(moved)
     n = len(stood) + len(moved)
     if not stood:
-        why = f"every command moved the robot, so it is at most {least:.3g} {axis.unit}"
+        why = (
+            f"it has no command that clearly left the robot at rest; it is at most {least:.3g} "
+            f"{axis.unit}"
+        )
         return untold(name, axis.unit, why, n)
     most = max(stood)
     evidence = f"{most:.3g} did not move the robot, {least:.3g} did"
@@ -257,5 +203,6 @@ def _error_of_median(values: Sequence[float] | Floats) -> float:
     return 1.2533 * float(np.std(values, ddof=1)) / len(values) ** 0.5
 
 
-def _lack(found: int, what: str) -> str:
+def lack(found: int, what: str) -> str:
+    """Says that ``found`` of ``what`` are too few."""
     return f"it has {found or 'no'} {what}, {FEWEST} are needed"

@@ -13,7 +13,8 @@ from dynastar.tune.estimate import Estimate, untold
 Floats = npt.NDArray[np.float64]
 
 AT_REST = 10  # scans in a row that a rest needs
-STILL = 0.15  # m, spread of a beam that saw the same thing all the time
+STILL = 0.15  # m, spread of a beam that saw the same thing all the time,
+STEADY = 2.0  # or so many times the median spread of the beams, if that is more
 FEWEST = 100  # readings at rest
 ROUNDING = 1e-4  # m
 MOST_OWN = 1.0  # m, the farthest own part; nearer where the footprint is known
@@ -42,7 +43,9 @@ def range_error(scans: Sequence[LaserScan], resting: npt.NDArray[np.bool_]) -> E
     for group in _rests(scans, resting):
         ranges = np.array([scan.readings() for scan in group])
         ranges = ranges[:, np.isfinite(ranges).all(axis=0)]
-        ranges = ranges[:, np.ptp(ranges, axis=0) < STILL]
+        spread = np.ptp(ranges, axis=0)
+        usual = float(np.median(spread)) if len(spread) else 0.0
+        ranges = ranges[:, spread < max(STILL, STEADY * usual)]
         errors.append((ranges - ranges.mean(axis=0)).ravel())
         half = max(half, *(0.5 * np.ptp(ranges, axis=0)), 0.0)
     found = np.concatenate([np.empty(0), *errors])
