@@ -10,7 +10,7 @@ from dynastar.check import check_robot
 from dynastar.errors import DataError
 from dynastar.geometry import Pose2D, Twist
 from dynastar.navigator import configured
-from dynastar.robot import ROBOTS, Lidar
+from dynastar.robot import ROBOTS, Lidar, slew
 from dynastar.ros.bag import BagWriter, make
 from recordings import ODOMETRY, OUT
 
@@ -123,6 +123,36 @@ def gap(first, last):
 def test_what_breaks_the_declared_settings_is_found(tmp_path, name, level, made, said):
     one = findings(made.write(tmp_path / "bag"))[name]
     assert (one.level, said in one.words()) == (level, True), one.words()
+
+
+@pytest.mark.parametrize("commands_at", [0.02, 0.05, 0.25])
+@pytest.mark.parametrize(("true", "told"), [(0.1, False), (0.4, True)])
+def test_commands_in_steps_act_as_late_as_they_do(tmp_path, true, told, commands_at):
+    """By hand: the drive takes 0.6 s to reach each; commands come more or less often than odometry."""
+    speed, asked = 0.0, 0.0
+    sent = []
+    with BagWriter(tmp_path / "bag") as bag:
+        for k in range(1600):
+            now = 0.01 * k
+            if k % round(100 * commands_at) == 0:
+                asked = 0.5 if now % 4.0 < 2.0 else 0.0
+                sent.append((now, asked))
+                bag.write("/cmd_vel", "geometry_msgs/msg/Twist", now, OUT.twist(Twist(asked, 0.0)))
+            acting = [v for at, v in sent if at <= now - true]
+            speed = slew(speed, acting[-1] if acting else 0.0, 0.8, 0.8, 0.01)
+            if k % 5 == 0:
+                pose, twist = Pose2D(0.0, 0.0, 0.0), Twist(speed, 0.0)
+                bag.write("/odom", ODOMETRY, now, OUT.odometry(pose, twist, FRAMES, now))
+            if k % 10 == 0:
+                bag.write("/scan", "sensor_msgs/msg/LaserScan", now, Made()._scan(now))
+    robot = replace(ROBOT, limits=ROBOT.limits._replace(v_accel=0.8, v_brake=0.8))
+    check = check_robot(
+        robot, configured("default", DECLARED), None, tmp_path / "bag", None, timed=False
+    )
+    (one,) = (one for one in check.findings if one.name == "recorded commands")
+    assert (one.values["latency"] is not None) == told, one.words()
+    if told:
+        assert one.values["latency"] == pytest.approx(true, abs=0.07)
 
 
 def test_stamps_of_another_clock_are_not_judged(tmp_path):

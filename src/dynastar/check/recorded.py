@@ -172,6 +172,9 @@ def commands(recording: Recording, config: NavigatorConfig) -> Finding:
         advice.append(f"Declare period = {slow:.2g}, or find what slows the loop down.")
     if recording.latency is not None:
         text += f", and acted after about {recording.latency:.2f} s, not {config.latency:g} s"
-        advice.append(f"Declare latency = {recording.latency:.2g} with some reserve.")
+        advice.append(
+            f"Declare latency = {recording.latency:.2g} with some reserve, or smaller accelerations: "
+            "dynastar tune --bag tells which."
+        )
     level: Level = "problem" if advice else "ok"
     return Finding("recorded commands", level, f"{text}.", " ".join(advice), values)

@@ -13,7 +13,7 @@ from dynastar.geometry import Pose2D, Twist, wrap_angle
 from dynastar.navigator import NavigatorConfig, RobotState
 from dynastar.navigator.latency_check import LatencyCheck
 from dynastar.navigator.readings import Readings
-from dynastar.robot import Robot
+from dynastar.robot import Robot, slew
 from dynastar.ros.bag import BagReader
 from dynastar.ros.bridge import TAKES
 from dynastar.ros.incoming import pose_of, scan_of, seconds, twist_of
@@ -21,6 +21,7 @@ from dynastar.ros.replay import COMMANDS, topics_of
 from dynastar.ros.transforms import Mount, Transforms
 
 Floats = npt.NDArray[np.float64]
+REST = Twist(0.0, 0.0)
 READ = "scan", "odom", "/tf", "/tf_static"
 
 
@@ -94,6 +95,8 @@ class _Collected:
     scans: list[tuple[int, float, float, float]] = field(default_factory=list)
     speeds: list[Twist] = field(default_factory=list)
     commands: list[float] = field(default_factory=list)
+    asked: Twist = REST
+    followed: Twist = REST
     hints: dict[str, None] = field(default_factory=dict)
     state: RobotState | None = None
     base: str = ""
@@ -117,15 +120,27 @@ class _Collected:
 
     def _take_command(self, at: float, message: Any) -> None:
         self.commands.append(at)
-        if self.state is not None:
-            self.acting.note(self.state, twist_of(getattr(message, "twist", message)))
-            self.latency = self.acting.longer or self.latency
+        self.asked = twist_of(getattr(message, "twist", message))
 
     def _take_odometry(self, message: Any) -> None:
         stamp, twist = seconds(message.header.stamp), twist_of(message.twist.twist)
         self.speeds.append(twist)
+        if self.state is not None and self.commands:
+            self._follow(self.state, stamp - self.state.stamp)
         self.state = RobotState(stamp, pose_of(message.pose.pose, "the odometry"), twist)
         self.base = message.child_frame_id.lstrip("/")
+
+    def _follow(self, state: RobotState, duration: float) -> None:
+        """Compares speeds with what a drive makes of the commands, which may be steps."""
+        limits, asked, last = self.robot.limits, self.asked, self.followed
+        self.followed = Twist(
+            slew(last.v, asked.v, limits.v_accel, limits.v_brake, max(duration, 0.0)),
+            slew(
+                last.omega, asked.omega, limits.omega_accel, limits.omega_brake, max(duration, 0.0)
+            ),
+        )
+        self.acting.note(state, self.followed)
+        self.latency = self.acting.longer or self.latency
 
     def _take_scan(self, message: Any) -> None:
         placed = self.transforms.planar(self.base, message.header.frame_id.lstrip("/"))
