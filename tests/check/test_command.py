@@ -1,6 +1,7 @@
 """``dynastar check`` as a process and as a call: sentences, JSON, report, exit status, errors."""
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -73,9 +74,9 @@ def test_a_problem_is_status_1_and_goes_away_with_what_is_advised(folder, capsys
     assert status == 1
     assert "\nproblem  A stop from v_max, 3 m/s" in out
     found = {one["name"]: one for one in json.loads(run(capsys, *words, "--json")[1])["findings"]}
-    fastest = found["braking"]["values"]["fastest"]
-    assert f"Declare v_max = {fastest:.2g}" in found["braking"]["advice"]
-    Path("fast.toml").write_text(TOO_FAST.replace("3.0", f"{0.99 * fastest:.3f}"))
+    fastest = re.search(r"Declare v_max = ([\d.]+)", found["braking"]["advice"])[1]
+    assert float(fastest) <= found["braking"]["values"]["fastest"]
+    Path("fast.toml").write_text(TOO_FAST.replace("3.0", f"{float(fastest)}"))
     assert run(capsys, "--robot", "fast.toml", "--no-time")[0] == 0
 
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from dynastar.check import check_robot
 from dynastar.check.doors import ways_of
-from dynastar.check.finding import LEVELS, worst
+from dynastar.check.finding import LEVELS, at_least, at_most, worst
 from dynastar.check.loop import loop
 from dynastar.errors import InputError
 from dynastar.footprint import Footprint, box
@@ -101,6 +101,45 @@ def test_a_finding_appears_with_its_cause_and_vanishes_without_it(
     assert finding(name).level == "ok"
 
 
+@given(st.floats(1.2, 4.0), st.floats(0.02, 0.4), st.floats(0.05, 0.2))
+def test_numbers_of_advice_are_right_as_they_are_printed(v_max, period, resolution):
+    robot = with_limits(v_max=v_max, v_brake=0.4)
+    changes = {"period": period, "scan_age": 0.05, "resolution": resolution, "latency": 0.0}
+    names = {"braking": "v_max", "delays": "scan_age", "cells": "resolution"}
+    for name, key in names.items():
+        told = re.search(rf"eclare {key} = ([\d.]+)", finding(name, robot, **changes).advice)
+        if told is None:
+            continue
+        value = float(told[1])
+        slower = with_limits(v_max=value, v_brake=0.4) if key == "v_max" else robot
+        after = changes if key == "v_max" else changes | {key: value}
+        assert f"{key} =" not in finding(name, slower, **after).advice
+
+
+@given(st.floats(1e-3, 1e3))
+def test_numbers_of_advice_are_rounded_to_the_right_side(value):
+    low, high = float(at_most(value)), float(at_least(value))
+    assert low <= value * (1.0 + 1e-6)
+    assert value * (1.0 - 1e-6) <= high
+    assert high - low <= 0.1001 * value
+
+
+def test_a_robot_that_sees_nothing_ahead_is_not_told_to_stand_still():
+    one = finding("braking", with_lidar(range_max=0.3))
+    assert one.level == "problem"
+    assert one.advice == "Take a lidar with a larger range_max."
+
+
+def test_beams_are_enough_for_a_stop_that_is_as_short_as_is_told():
+    few = {"lidar": GOOD.lidar._replace(beams=30)}
+    one = finding("beams", replace(GOOD, **few))
+    stop = float(re.search(r"or stop within ([\d.]+) m", one.advice)[1])
+    robot = replace(GOOD, limits=GOOD.limits._replace(v_max=0.5), **few)
+    delays = {"latency": 0.0, "period": 0.01}
+    way = finding("braking", robot, **delays).values["stop"]
+    assert (way <= stop) == (finding("beams", robot, **delays).level == "ok")
+
+
 @pytest.mark.parametrize(
     ("more", "level"), [(-0.04, "problem"), (0.04, "warning"), (0.12, "ok"), (0.5, "ok")]
 )
@@ -108,6 +147,7 @@ def test_a_door_is_too_narrow_tight_or_wide_enough(more, level):
     width = ways_of(GOOD, configured("default", DECLARED)).drive + more
     one = finding("doors", grid=room(width))
     assert one.level == level
+    assert "the map's only passage: " in one.text or "the map's only passage, as" in one.text
     assert "(2.9" in one.text or "(3.0" in one.text
     if level == "problem":
         wider = finding("doors", replace(GOOD, footprint=Footprint.disc(0.1)), room(width))

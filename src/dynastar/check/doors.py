@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from dynastar.check.finding import Finding
+from dynastar.check.finding import Finding, at_most
 from dynastar.check.passages import Passage, passages
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator.config import CELLS, NavigatorConfig, fitted, margin_of
@@ -67,25 +67,32 @@ def doors(found: Sequence[Passage], ways: Ways) -> Finding:
     values["narrowest"] = found[0].width
     if shut:
         text = (
-            f"{len(shut)} of the map's {len(found)} passages are narrower than {ways.drive:.2f} m: "
+            f"The robot needs {ways.drive:.2f} m and does not fit through {_which(shut, found)}: "
             f"{_places(shut)}."
         )
         advice = "Measure them, and correct the map, the footprint or the margins, or set no goals there."
         return Finding("doors", "problem", text, advice, values)
     if tight:
         text = (
-            f"The robot may not get through {len(tight)} of the map's {len(found)} passages, as cells "
-            f"round them to less than {ways.drive:.2f} m: {_places(tight)}."
+            f"The robot may not get through {_which(tight, found)}, as rounding to cells may leave "
+            f"less than {ways.drive:.2f} m: {_places(tight)}."
         )
         advice = "Try them, or take a smaller resolution and smaller margins."
         return Finding("doors", "warning", text, advice, values)
-    text = (
-        f"The robot fits through all {len(found)} passages of the map; the narrowest: "
-        f"{_places(found[:1])}"
-    )
+    narrowest = f"{'the narrowest is ' if len(found) > 1 else ''}{_places(found[:1])}"
+    text = f"The robot fits through {_which(found, found)}: {narrowest}"
     if found[0].width < ways.turn:
         text += ", where it cannot turn on the spot"
     return Finding("doors", "ok", f"{text}.", "", values)
+
+
+def _which(some: Sequence[Passage], found: Sequence[Passage]) -> str:
+    """Some of the passages that were found, in words."""
+    if len(found) == 1:
+        return "the map's only passage"
+    if len(some) == len(found):
+        return f"all {len(found)} passages of the map"
+    return f"{len(some)} of the map's {len(found)} passages"
 
 
 def _places(found: Sequence[Passage]) -> str:
@@ -106,11 +113,11 @@ def cells(robot: Robot, config: NavigatorConfig, grid: OccupancyGrid | None) -> 
         values["map"] = grid.resolution
     text += f"; half of the footprint's width is {half:.3g} m."
     if planned > half / CELLS + ROUNDING:
-        advice = f"Declare resolution = {half / CELLS:.3g}, {CELLS} cells to that."
+        advice = f"Declare resolution = {at_most(half / CELLS, 3)}, {CELLS} cells to that."
         return Finding("cells", "warning", text, advice, values)
     if grid is not None and grid.resolution > 0.5 * half + ROUNDING:
         advice = (
-            f"Draw the map in cells of {0.5 * half:.2g} m or less: walls are up to a cell thicker on "
+            f"Draw the map in cells of {at_most(0.5 * half)} m or less: walls are up to a cell thicker on "
             "it, and doors narrower."
         )
         return Finding("cells", "warning", text, advice, values)

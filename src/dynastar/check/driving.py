@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from dynastar.check.finding import Finding, Level
+from dynastar.check.finding import Finding, Level, at_most
 from dynastar.check.stopping import (
     blind_beyond,
     fastest_within,
@@ -17,6 +17,7 @@ from dynastar.check.stopping import (
 from dynastar.navigator.config import NavigatorConfig, fitted, margin_of
 from dynastar.robot import Robot
 
+SLOWEST = 0.01  # m/s that v_max can be
 AMPLE = 2.0  # times the stopping distance that the robot should see
 STRONG_BRAKE = 5.0  # m/s2 that few drives reach on a floor
 BLIND = 0.05  # m beyond the footprint that may go unseen
@@ -43,7 +44,9 @@ def braking(robot: Robot, config: NavigatorConfig) -> Finding:
     seen = f"the lidar shows free space {sight.ahead:.1f} m ahead ({_limit(robot, config)})"
     if stop.distance > room:
         words = f"{seen}, so the robot drives about {fastest:.2f} m/s."
-        advice = f"Declare v_max = {fastest:.2g}, or {_see_farther(robot, config)}."
+        slower = f"declare v_max = {at_most(fastest)}, or " if fastest >= SLOWEST else ""
+        advice = f"{slower}{_see_farther(robot, config)}."
+        advice = advice[0].upper() + advice[1:]
         return Finding("braking", "problem", f"{text}; {words}", advice, values)
     if AMPLE * stop.distance > room:
         advice = (
@@ -114,7 +117,9 @@ def beams(robot: Robot, config: NavigatorConfig) -> Finding:
     if gap <= narrowest:
         return Finding("beams", "ok", text, "", values)
     needed = math.ceil(lidar.beams * gap / narrowest)
-    advice = f"Take {needed} beams or more, or brake within {narrowest / lidar.increment:.2f} m."
+    advice = f"Take {needed} beams or more"
+    left = narrowest / lidar.increment - (far - stop)
+    advice += f", or stop within {at_most(left)} m." if left > 0.0 else "."
     return Finding("beams", "problem", text, advice, values)
 
 

@@ -5,7 +5,7 @@ from time import perf_counter
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.check.finding import Finding, Level, worst
+from dynastar.check.finding import Finding, Level, at_least, worst
 from dynastar.check.stopping import stop_from
 from dynastar.geometry import Goal, Pose2D
 from dynastar.grid import OccupancyGrid
@@ -81,7 +81,7 @@ def loop(milliseconds: Floats, period: float) -> Finding:
         return Finding("loop", "ok", text, "", values)
     level: Level = "problem" if slow > 1e3 * period else "warning"
     advice = (
-        f"Declare period = {2e-3 * slow:.2g} or more, or save time: larger resolution, smaller "
+        f"Declare period = {at_least(2e-3 * slow)} or more, or save time: larger resolution, smaller "
         "local_map.size, fewer samples."
     )
     return Finding("loop", level, text, advice, values)
@@ -100,7 +100,7 @@ def delays(robot: Robot, config: NavigatorConfig) -> Finding:
     if age < 2.0 * period:
         level = worst(level, "problem" if age <= period else "warning")
         advice.append(
-            f"Declare scan_age = {2.0 * period:.2g} or more, or the robot brakes for nothing."
+            f"Declare scan_age = {at_least(2.0 * period)} or more, or the robot brakes for nothing."
         )
     if latency == 0.0:
         level = worst(level, "warning")

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from dynastar.check.finding import Finding, Level, worst
+from dynastar.check.finding import Finding, Level, at_least, at_most, worst
 from dynastar.check.recording import Recording, Stream
 from dynastar.navigator import NavigatorConfig
 from dynastar.robot import Robot
@@ -48,7 +48,7 @@ def rate(what: str, stream: Stream, config: NavigatorConfig) -> Finding:
         advice = f"The robot brakes in each of them: find what delays the {what}."
         return Finding(name, "warning" if few else "problem", text, advice, values)
     if age < 2.0 * middle:
-        advice = f"Declare scan_age = {2.0 * middle:.2g} or more, two of these gaps."
+        advice = f"Declare scan_age = {at_least(2.0 * middle)} or more, two of these gaps."
         return Finding(name, "warning", text, advice, values)
     return Finding(name, "ok", text, "", values)
 
@@ -97,7 +97,7 @@ def readings(recording: Recording, robot: Robot) -> Finding:
     if least < (1.0 - TOLERANCE) * lidar.beams:
         wrong.append(f"beams = {least}")
     if fov < (1.0 - TOLERANCE) * declared:
-        wrong.append(f"fov = {fov:.4g}")
+        wrong.append(f"fov = {at_most(fov, 4)}")
     if high < (1.0 - TOLERANCE) * lidar.range_max:
         wrong.append(f"range_max = {high:g}")
     if low > lidar.range_min + TOLERANCE:
@@ -169,7 +169,7 @@ def commands(recording: Recording, config: NavigatorConfig) -> Finding:
     values = {"gap": slow, "latency": recording.latency}
     advice = []
     if slow > SLOWER * config.period:
-        advice.append(f"Declare period = {slow:.2g}, or find what slows the loop down.")
+        advice.append(f"Declare period = {at_least(slow)}, or find what slows the loop down.")
     if recording.latency is not None:
         text += f", and acted after about {recording.latency:.2f} s, not {config.latency:g} s"
         advice.append(

@@ -55,7 +55,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="its robot, settings and map, where --robot and --map give no others",
     )
     parser.add_argument(
-        "--map", type=path, metavar="MAP", help="the map to drive on: .yaml (ROS), .npy"
+        "--map", type=path, metavar="MAP", help="the map to drive on: .yaml (ROS), .npy, .txt"
     )
     parser.add_argument(
         "--bag", type=path, metavar="BAG", help="a recording of scans and odometry by ROS 2"
