@@ -102,6 +102,15 @@ def test_a_cluster_that_is_not_there_is_an_error_in_words(monkeypatch):
     from dynastar.bench import remote
 
     monkeypatch.setattr(remote, "TIMEOUT", 1)
-    for address in ("tcp://127.0.0.1:9", "nonsense://"):
-        with pytest.raises(InputError, match=rf"--dask {address}.*tcp://127"):
+    for address in ("tcp://127.0.0.1:9", "nonsense://:1"):
+        with pytest.raises(InputError, match=rf"--dask {address}: no scheduler.*tcp://127"):
             list(completed(abs, [1], address))
+
+
+def test_an_address_without_a_port_is_refused_before_a_client_is_made(monkeypatch):
+    """Such a client waits for half a minute when it is deleted, and then prints a traceback."""
+    import distributed
+
+    monkeypatch.setattr(distributed, "Client", None)
+    with pytest.raises(InputError, match="--dask nowhere: expected an address with its port"):
+        list(completed(abs, [1], "nowhere"))

@@ -4,6 +4,7 @@ The cluster's workers need the same version of dynastar's code and the data unde
 runs a job again whose worker has died; every job's row is handed on once.
 """
 
+import re
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
@@ -14,6 +15,7 @@ from dynastar.extras import how_to_install
 
 Row = dict[str, Any]
 
+EXAMPLE = "tcp://127.0.0.1:8786"
 TIMEOUT = 15  # s to connect
 RETRIES = 2  # further attempts at a job that raised because of the cluster
 
@@ -57,12 +59,14 @@ def _client(address: str) -> Any:
         from distributed import Client
     except ImportError:
         raise InputError(f"--dask needs Dask: {how_to_install('dask')}") from None
+    if not re.search(r":\d+$", address):  # such a client raises again when it is deleted
+        raise InputError(f"--dask {address}: expected an address with its port, as {EXAMPLE}")
     try:
         return Client(address, timeout=TIMEOUT, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         raise InputError(
             f"--dask {address}: no scheduler answers there ({error!s:.100}); expected its address, as in "
-            "tcp://127.0.0.1:8786"
+            f"{EXAMPLE}"
         ) from None
 
 
