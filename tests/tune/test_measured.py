@@ -221,6 +221,8 @@ def test_the_command_writes_the_file_and_names_what_is_missing(drives, tmp_path,
     assert "latency: 0.1" in capsys.readouterr().out
     assert "[robot.limits]" in out.read_text("utf-8")
     bag = str(drives[1][1])
+    assert main(["tune", "--bag", bag, "--robot", "jackal", "--out", str(out)]) == 0
+    assert 'base = "jackal"' in out.read_text("utf-8")
     assert main(["tune", "--bag", bag, "--topic", "cmd_vel=/base/cmd", "--out", str(out)]) == 2
     assert "give --topic cmd_vel=TOPIC" in capsys.readouterr().err
     assert main(["tune", "--bag", bag, "--topic", "speed=/cmd_vel"]) == 2

@@ -136,6 +136,7 @@ def test_without_optuna_the_extra_is_named(monkeypatch, capsys):
     [
         (["--hours", "0"], "--hours 0: expected 0.001 or more"),
         (["--robot", "none.toml"], "none.toml: there is no such file"),
+        (["--robot", "jackle"], "unknown robot 'jackle' (did you mean 'jackal'?)"),
     ],
 )
 def test_options_that_cannot_be_are_refused(words, said, tmp_path, monkeypatch, capsys):

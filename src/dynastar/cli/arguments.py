@@ -25,3 +25,10 @@ def add_set(parser: argparse.ArgumentParser) -> None:
         metavar="KEY=VALUE",
         help="a setting of the navigator, as dwa.horizon=2; repeatable",
     )
+
+
+def add_robot(parser: argparse.ArgumentParser) -> None:
+    """Add ``--robot``, a name or a file, for ``robots.named_robot``."""
+    parser.add_argument(
+        "--robot", metavar="ROBOT", help="a robot that comes with dynastar, or a TOML file"
+    )

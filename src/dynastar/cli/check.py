@@ -6,7 +6,7 @@ import textwrap
 from typing import TYPE_CHECKING
 
 from dynastar import io
-from dynastar.cli.arguments import add_json, add_set
+from dynastar.cli.arguments import add_json, add_robot, add_set
 from dynastar.cli.outputs import make_folder
 from dynastar.cli.parsing import path
 from dynastar.cli.show import as_json
@@ -45,9 +45,7 @@ TOPICS = ("scan", "odom", "cmd_vel", "tf", "tf_static")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the command."""
-    parser.add_argument(
-        "--robot", metavar="ROBOT", help="a robot that comes with dynastar, or a TOML file"
-    )
+    add_robot(parser)
     parser.add_argument(
         "--scenario",
         type=path,
@@ -104,6 +102,7 @@ def _given(
 ) -> "tuple[Robot, NavigatorConfig, OccupancyGrid | None]":
     """The robot, its settings and the map that the options name."""
     from dynastar.bench.settings import parsed
+    from dynastar.cli.robots import named_robot
     from dynastar.navigator.config import changed
     from dynastar.simulation.run import effective_config
 
@@ -114,22 +113,10 @@ def _given(
         scenario = io.load_scenario(arguments.scenario)
         grid, robot, config = scenario.grid, scenario.robot, effective_config(scenario)
     if arguments.robot is not None:
-        robot, config = _named(arguments.robot)
+        robot, config = named_robot(arguments.robot)
     if arguments.map is not None:
         grid = io.load_map(arguments.map)
     return robot, changed(config, parsed(arguments.set)), grid
-
-
-def _named(name: str) -> "tuple[Robot, NavigatorConfig]":
-    """A robot that comes with dynastar, with default settings, or the one in a file."""
-    from dynastar.config import choose
-    from dynastar.navigator import NavigatorConfig
-    from dynastar.robot import ROBOTS
-
-    file = path(name)
-    if file.suffix or file.exists():
-        return io.load_robot(file)
-    return choose(name, ROBOTS, "robot"), NavigatorConfig()
 
 
 def as_text(check: "Check") -> str:

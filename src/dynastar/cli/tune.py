@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from dynastar import io
+from dynastar.cli.arguments import add_robot
 from dynastar.cli.outputs import check_file, make_folder
 from dynastar.cli.parsing import count, number, path, seed
 from dynastar.errors import InputError, ScenarioError
@@ -40,7 +41,7 @@ TOPICS = ("scan", "odom", "cmd_vel")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the command."""
-    parser.add_argument("--robot", type=path, metavar="FILE.toml", help="tune for this robot")
+    add_robot(parser)
     parser.add_argument(
         "--suite", default="random,people", metavar="NAMES", help="default random,people"
     )
@@ -87,12 +88,13 @@ def execute(arguments: argparse.Namespace) -> int:
 def _measure(arguments: argparse.Namespace) -> int:
     require("bags", "recordings need")
     from dynastar.cli.replay import topic_table
+    from dynastar.cli.robots import named_robot
     from dynastar.tune.measured import measured, robot_toml
     from dynastar.tune.recording import read_drive
 
     file = check_file("--out", arguments.out or Path("robot.toml"))
     assert file is not None
-    robot = None if arguments.robot is None else io.load_robot(arguments.robot)[0]
+    robot = None if arguments.robot is None else named_robot(arguments.robot)[0]
     found = measured(read_drive(arguments.bag, topic_table(arguments.topic, TOPICS)), robot)
     print(found.words())
     with io.written_aside(file) as aside:
@@ -110,6 +112,7 @@ def _search(arguments: argparse.Namespace) -> int:
     require("tune", "tuning needs")
     from dynastar.bench.workers import pool
     from dynastar.cli.compiling import prepare
+    from dynastar.cli.robots import named_robot
     from dynastar.navigator import NavigatorConfig
     from dynastar.tune.search import Plan
     from dynastar.tune.tuning import Task, tune
@@ -118,7 +121,7 @@ def _search(arguments: argparse.Namespace) -> int:
         raise InputError(f"--hours {arguments.hours:g}: expected {FEWEST_HOURS:g} or more")
     robot, config = None, NavigatorConfig()
     if arguments.robot is not None:
-        robot, config = io.load_robot(arguments.robot)
+        robot, config = named_robot(arguments.robot)
     names = tuple(dict.fromkeys(arguments.suite.split(",")))
     task = Task(names, arguments.worlds, robot, config, arguments.data, arguments.seed)
     folder = make_folder("--out", arguments.out or Path("out/tune"))
