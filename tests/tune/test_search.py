@@ -12,7 +12,7 @@ from dynastar.tune.results import tuned_toml, write_results
 from dynastar.tune.sampler import importances, propose
 from dynastar.tune.search import Plan, Search
 from dynastar.tune.space import SPACE, start_values
-from dynastar.tune.state import State, load_state
+from dynastar.tune.state import State, Trial, load_state
 from dynastar.tune.verdict import compared, judged
 from dynastar.tune.worlds import World
 
@@ -100,6 +100,7 @@ def test_what_mattered_is_found(found, tmp_path):
     pytest.importorskip("matplotlib")
     write_results(tmp_path, state, SMALL, judged(state), None)
     page = (tmp_path / "report.html").read_text("utf-8")
+    assert "In SI units; limits are fractions of the robot's own." in page
     assert page.count("<tr") == 31
     assert page.count("<svg") == 1
     assert "better than the default" in page
@@ -184,3 +185,12 @@ def test_proposals_stay_in_their_ranges_and_are_repeated(found):
     for trial in state.trials:
         for parameter in SMALL:
             assert parameter.low <= trial.values[parameter.name] <= parameter.high
+
+
+@pytest.mark.parametrize(
+    ("tried", "said"), [(0, "0 settings"), (1, "1 setting"), (2, "2 settings")]
+)
+def test_how_many_settings_were_tried_is_said_in_words(tried, said):
+    row = {"outcome": "arrived", "time": 1.0}
+    trials = [Trial({}, [row], done=True)] + [Trial({}, [row], "slow", True)] * tried
+    assert judged(State({}, trials)).words.endswith(f"found in {said}")

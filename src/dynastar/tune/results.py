@@ -63,7 +63,8 @@ def report_html(state: State, space: Sequence[Parameter], found: Verdict) -> str
         ]
     else:
         parts.append("<p>Too few settings were tried to say.</p>")
-    parts += ["<h2>Settings</h2>", _table(state, space), "</body></html>"]
+    units = "In SI units; limits are fractions of the robot's own."
+    parts += ["<h2>Settings</h2>", f"<p>{units}</p>", _table(state, space), "</body></html>"]
     return "\n".join(parts)
 
 

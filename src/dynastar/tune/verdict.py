@@ -10,6 +10,7 @@ from typing import Any
 
 from dynastar.bench.compare import verdict
 from dynastar.bench.statistics import bootstrap, mcnemar, succeeded
+from dynastar.config import counted
 from dynastar.tune.state import Row, State
 
 
@@ -34,7 +35,8 @@ def judged(state: State) -> Verdict:
     tried = len(state.finished) - 1
     best = state.best
     if best is None or best is state.trials[0]:
-        return Verdict(False, f"nothing better than the default was found in {tried} settings")
+        settings = counted(tried, "setting") or "0 settings"
+        return Verdict(False, f"nothing better than the default was found in {settings}")
     return compared(state.report_default, state.report_tuned)
 
 
