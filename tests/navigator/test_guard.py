@@ -1,6 +1,7 @@
 """The guard: what it lets pass, what it changes, and that nothing is touched."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -200,6 +201,41 @@ def test_a_state_that_is_none_brakes(state):
     assert given.command == Twist(0.0, 0.0)
     assert "not finite" in given.reason
     assert guard.filter(None, None, Twist(0.3, 0.0)).command == Twist(0.0, 0.0)
+
+
+def test_numbers_that_are_not_finite_brake_though_the_robot_was_there_before():
+    drive = GuardedDrive()
+    drive.drive(Twist(0.6, 0.0), 1.5)
+    state = drive.world.sensed_state()
+    for bad in (math.inf, -math.inf, math.nan):
+        for at in range(3):
+            pose = Pose2D(*(bad if k == at else value for k, value in enumerate(state.pose)))
+            given = drive.guard.filter(state._replace(pose=pose), None, Twist(0.6, 0.0))
+            assert "not finite" in given.reason
+    assert drive.guard.hints == []
+
+
+@pytest.mark.parametrize("shift", [-1000.0, -1e18])
+def test_a_clock_that_begins_anew_is_followed_after_a_second(shift):
+    """A simulation that is reset, or one stamp that was far ahead."""
+    drive = GuardedDrive(latency=0.1)
+    drive.drive(Twist(0.6, 0.0), 1.5)
+    if shift == -1e18:
+        state = drive.world.sensed_state()
+        drive.guard.filter(state._replace(stamp=1e18), None, Twist(0.6, 0.0))
+        shift = 0.0
+    speeds = []
+    for _ in range(40):
+        state, scan = drive.world.sensed_state(), drive.world.scan()
+        moved = replace(scan, stamp=scan.stamp + shift)
+        state = state._replace(stamp=state.stamp + shift)
+        given = drive.guard.filter(state, moved, Twist(0.6, 0.1))
+        speeds.append(given.command.v)
+        drive.world.step(given.command, PERIOD)
+    assert min(speeds) == 0.0
+    assert not given.changed
+    assert len(drive.guard._commands._sent) < 5
+    assert drive.world.contact == ""
 
 
 def test_keep_out_zones_of_the_map_are_not_entered():

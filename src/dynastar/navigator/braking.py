@@ -67,6 +67,7 @@ class Commands:
 
     def __init__(self, limits: Limits, period: float, latency: float) -> None:
         self.limits, self.period, self.latency = limits, period, latency
+        self._declared = period
         self.check = DriveCheck(limits, period, latency)
         self._sent: list[tuple[float, Twist]] = []
         self._last = REST
@@ -136,6 +137,11 @@ class Commands:
         self._stop = StopProfile(command, self.limits)
         self._note(state, command)
         return command
+
+    def forget_times(self) -> None:
+        """Drops the stamps of commands: the clock is another. The stop is still carried on."""
+        self._sent = []
+        self.check = DriveCheck(self.limits, self._declared, self.latency)
 
     def brake(self, state: RobotState) -> Twist:
         """Carries the last certified stop on, from no more than was commanded last.

@@ -11,6 +11,7 @@ from dynastar.robot import Limits
 
 FARTHEST = 1e6  # m from the map's origin, where positions still tell cells apart
 KEPT_FOR = 2.0  # s
+OTHER_CLOCK = 1.0  # s of rising stamps after time went back, from which on that is a clock anew
 FASTER = 1.2  # times the highest speed, up to which a pose has not jumped
 JUMP = 0.05  # m
 ON_TIME = 1.1  # of the declared period, up to which commands are not late
@@ -24,6 +25,7 @@ class PoseHistory:
     def __init__(self, limits: Limits, config: NavigatorConfig) -> None:
         self._limits, self._config = limits, config
         self._states: deque[RobotState] = deque()
+        self._back: tuple[float, float] | None = None  # first and last stamp since time went back
 
     def fault(self, state: RobotState) -> str | None:
         """Describe why a state cannot be used, or None."""
@@ -35,8 +37,16 @@ class PoseHistory:
         if max(abs(x), abs(y), abs(theta)) > FARTHEST:
             return f"the robot's pose is ({x:g}, {y:g}, {theta:g}): expected within 1e6 m and rad"
         if self._states and state.stamp < self._states[-1].stamp:
-            return f"time went back by {self._states[-1].stamp - state.stamp:.3f} s"
+            begun, last = self._back or (state.stamp, state.stamp)
+            self._back = begun if last <= state.stamp else state.stamp, state.stamp
+            return f"time went back by {self._states[-1].stamp - state.stamp:.6g} s"
+        self._back = None
         return None
+
+    @property
+    def clock_is_another(self) -> bool:
+        """Whether time went back, and has risen for a while since."""
+        return self._back is not None and self._back[1] - self._back[0] >= OTHER_CLOCK
 
     def add(self, state: RobotState) -> bool:
         """Keep a state; True if the pose jumped, which drops those before (the map was corrected)."""
