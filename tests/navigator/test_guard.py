@@ -8,14 +8,16 @@ import pytest
 
 from driving import CELL, LIMITS, PERIOD, ROUND, room, with_ranges
 from dynastar.errors import InputError
+from dynastar.footprint import Footprint
 from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.masks import with_keepout, with_speed_limits
 from dynastar.navigator import Guard, Guarded, Navigator, NavigatorConfig, RobotState
 from dynastar.navigator.guard import STEADY
 from dynastar.perception import MovingObstacle
-from dynastar.robot import ROBOTS, slew
+from dynastar.robot import ROBOTS, Lidar, Limits, Robot, slew
 from dynastar.simulation import Drivetrain, Noise, Scenario, World
+from dynastar.simulation.imperfections import Odometry
 
 START = (1.5, 3.0, 0.0)
 BOX = (4.0, 2.0, 5.0, 4.0)
@@ -378,3 +380,26 @@ def test_no_controller_makes_it_touch_anything_with_all_errors_at_their_bounds(n
 
         drive.drive(at_the_nearest if number % 2 else wanted, 1.0)
         assert drive.world.contact == "", drive.world
+
+
+@pytest.mark.parametrize("latency", [0.0, 0.3])
+@pytest.mark.parametrize(("gain", "odometry"), [(1.15, 1.0), (1.15, 1.0 / 1.15), (0.85, 1.0)])
+@pytest.mark.parametrize("brake", [0.3, 1.0])
+def test_a_drive_that_is_as_fast_as_declared_stops_with_the_brakes_declared(
+    brake, gain, odometry, latency
+):
+    """Its brakes are no stronger than those of an exact drive, and nothing else is off."""
+    limits = Limits(1.5, 1.0, brake, 2.0, brake, 2.0)
+    robot = Robot("fast", limits, Footprint.disc(0.3), Lidar(720, math.tau, 0.0, 10.0))
+    drive = GuardedDrive(
+        true=room(9.0, 6.0), robot=robot, start=(1.0, 3.0, 0.0),
+        scenario={
+            "latency": latency, "drive": Drivetrain(gain_v=gain, gain_omega=gain),
+            "odometry": Odometry(odometry, odometry),
+        },
+        latency=latency, drive_error=0.15, range_error=0.0, pose_error=0.0, heading_error=0.0,
+    )  # fmt: skip
+    found = drive.drive(Twist(1.5, 0.0), 16.0)
+    assert found[-1].command == Twist(0.0, 0.0)
+    assert drive.world.contact == ""
+    assert drive.world.clearance < 0.3

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from driving import LIMITS, PERIOD, REST, Drive, room, under_way, with_ranges
+from driving import PERIOD, REST, Drive, room, under_way, with_ranges
 from dynastar.geometry import Goal, Pose2D
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.navigator import RobotState
@@ -152,15 +152,15 @@ def test_sensor_loss_stops_along_the_arc_in_the_stopping_time_and_goes_on_afterw
     while abs(drive.twist.omega) < 0.05 or drive.twist.v < 0.3:
         drive.tick()
     drive.tick()
-    begin, twist = drive.pose, drive.twist
-    expected = arc(begin, twist, 0.5 * stopping_time(twist, LIMITS))
+    begin, twist, limits = drive.pose, drive.twist, drive.navigator.robot.limits
+    expected = arc(begin, twist, 0.5 * stopping_time(twist, limits))
     ticks = 0
     stale = with_ranges(drive.scan(), drive.scan().ranges, stamp=drive.now - 1.0)
     while drive.twist != REST:
         drive.tick(stale)
         assert drive.status.state == "sensor_lost"
         ticks += 1
-    assert ticks * PERIOD <= stopping_time(twist, LIMITS) + 1.01 * PERIOD
+    assert ticks * PERIOD <= stopping_time(twist, limits) + 1.01 * PERIOD
     assert math.dist(drive.pose[:2], expected[:2]) < 0.02
     assert drive.pose.theta == pytest.approx(expected.theta, abs=0.05)
     drive.until("arrived")

@@ -18,7 +18,8 @@ RIM_POINTS = 180  # of a circle
 class Stop:
     """A certified stop from ``speed`` (m/s): ``reaction`` and ``braking`` are metres.
 
-    The robot drives on for latency and period, then it brakes. Both ways are greater by ``drive_error``.
+    The robot drives on for latency and period, then it brakes, both from a speed that is greater by
+    ``drive_error``.
     """
 
     speed: float
@@ -33,23 +34,21 @@ class Stop:
 
 
 def stop_from(speed: float, limits: Limits, config: NavigatorConfig) -> Stop:
-    """The certified stop from a forward speed (m/s)."""
-    delay, more = config.latency + config.period, 1.0 + config.drive_error
-    braking = more * speed * speed / (2.0 * limits.v_brake)
-    return Stop(speed, more * speed * delay, braking, delay + speed / limits.v_brake)
+    """The certified stop from a forward speed (m/s) that is commanded."""
+    delay, fast = config.latency + config.period, (1.0 + config.drive_error) * speed
+    braking = fast * fast / (2.0 * limits.v_brake)
+    return Stop(speed, fast * delay, braking, delay + fast / limits.v_brake)
 
 
 def fastest_within(distance: float, limits: Limits, config: NavigatorConfig) -> float:
     """The speed (m/s) from which a stop takes ``distance`` (m), not more than v_max."""
-    way = distance / (1.0 + config.drive_error)
-    return _fastest(way, config.latency + config.period, limits)
+    fast = _fastest(distance, config.latency + config.period, limits.v_brake)
+    return min(limits.v_max, fast / (1.0 + config.drive_error))
 
 
-def _fastest(way: float, delay: float, limits: Limits) -> float:
-    """The speed (m/s, up to v_max) from which ``delay`` (s) and braking take ``way`` (m)."""
-    brake = limits.v_brake
-    speed = brake * (math.hypot(delay, math.sqrt(2.0 * max(way, 0.0) / brake)) - delay)
-    return min(limits.v_max, speed)
+def _fastest(way: float, delay: float, brake: float) -> float:
+    """The speed (m/s) from which ``delay`` (s) and braking take ``way`` (m)."""
+    return brake * (math.hypot(delay, math.sqrt(2.0 * max(way, 0.0) / brake)) - delay)
 
 
 def front_of(footprint: Footprint) -> float:
@@ -109,8 +108,10 @@ def fastest_near_people(robot: Robot, config: NavigatorConfig) -> float:
     They walk at ``hidden_speed`` as soon as a command is given, and may come nearer by SLACK.
     """
     limits, walks = robot.limits, config.hidden_speed
+    brake = limits.v_brake / (1.0 + config.drive_error)  # as commanded
     way = sight_of(robot, config).ahead - front_of(robot.footprint) + SLACK - walks * config.period
-    return _fastest(way, config.latency + config.period + walks / limits.v_brake, limits)
+    delay = config.latency + config.period + walks / brake
+    return min(limits.v_max, _fastest(way, delay, brake))
 
 
 def blind_beyond(robot: Robot) -> float:

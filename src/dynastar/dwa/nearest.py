@@ -29,9 +29,9 @@ def nearest_admissible(around, rules, stops_from, twist, asked, steady):
 def fastest(around, rules, stops_from, twist, asked, steady):
     """The command towards the largest admissible share of the speeds ``asked`` for.
 
-    A robot that has to be ``steady`` starts with no share below a part, so that the noise of its
-    sensors does not start and stop it. Returns whether there is such a command, the command, and why
-    the speeds asked for are refused, or ADMISSIBLE.
+    A robot that has to be ``steady`` and is slower than the least share starts with none below a part,
+    so that the noise of its sensors does not start and stop it. Returns whether there is such a
+    command, the command, and why the speeds asked for are refused, or ADMISSIBLE.
     """
     command, why = checked(around, rules, stops_from, twist, asked, steady)
     if why == ADMISSIBLE:
@@ -45,7 +45,8 @@ def fastest(around, rules, stops_from, twist, asked, steady):
         if code == ADMISSIBLE:
             best = share
             break
-    starts = steady > 0.0 and (now_v if v != 0.0 else now_omega) == 0.0
+    now, most = (now_v, v) if v != 0.0 else (now_omega, omega)
+    starts = steady > 0.0 and abs(now) <= step * 0.5**HALVINGS * abs(most)
     if best > 0.0 or not starts:
         for _ in range(HALVINGS):
             step *= 0.5

@@ -65,8 +65,11 @@ def _lesser(measured: float, commanded: float) -> float:
 class Commands:
     """Commands under way: the motion until a new command acts, and the certified stop after it."""
 
-    def __init__(self, limits: Limits, period: float, latency: float) -> None:
+    def __init__(
+        self, limits: Limits, period: float, latency: float, drive_error: float = 0.0
+    ) -> None:
         self.limits, self.period, self.latency = limits, period, latency
+        self._faster = 1.0 + drive_error
         self._declared = period
         self.check = DriveCheck(limits, period, latency)
         self._sent: list[tuple[float, Twist]] = []
@@ -116,19 +119,25 @@ class Commands:
 
         A command may act at once, or at the declared latency at the latest, one after the other; the
         times in between are LATENCY_STEP apart. Until then the robot follows the commands under way as
-        expected, or the oldest or the newest of them alone. The next command may come the latest. The
+        expected, or the oldest or the newest of them alone, faster by the drive's error. The next command
+        may come the latest. The
         twist is the greater of the measured one and ``twist``, that from which the command goes on.
         """
         steps, found = math.ceil(self.latency / LATENCY_STEP - 1e-9), []
+        fast = state._replace(twist=self._fast(state.twist))
         for k in range(steps + 1):
             latency = self.latency * k / max(steps, 1)
             expected = acting if k == steps else self.when_one_acts(state, latency)
             alone = self._sent[:: max(len(self._sent) - 1, 1)] if latency > 0.0 else []
-            ways = [self._driven(state, [command], [latency]) for _, command in alone]
+            ways = [self._driven(fast, [self._fast(command)], [latency]) for _, command in alone]
             for pose, (v, omega) in [*ways, expected]:
                 greater = Twist(max(v, twist.v, key=abs), max(omega, twist.omega, key=abs))
                 found.append(StopStart(pose, greater, self.period + self.latency - latency))
         return found
+
+    def _fast(self, twist: Twist) -> Twist:
+        """A twist of a drive that is faster than told by its largest error."""
+        return Twist(self._faster * twist.v, self._faster * twist.omega)
 
     def send(self, state: RobotState, command: Twist | None) -> Twist:
         """Notes a command that has a certified stop; None carries the last one's stop on."""

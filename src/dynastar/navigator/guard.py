@@ -71,7 +71,7 @@ class Guard:
         self.robot, self.config = robot, config
         self.sensing = Sensing(robot, config, self._planning_map(grid))
         self._check = Admissibility(robot, config)
-        self._commands = Commands(robot.limits, config.period, config.latency)
+        self._commands = Commands(robot.limits, config.period, config.latency, config.drive_error)
         self._acts_at = Pose2D(0.0, 0.0, 0.0)
         self._cut = False  # whether the last command was held back
         self.last = Guarded(Twist(0.0, 0.0), False)

@@ -19,7 +19,11 @@ LONGEST_PATH = 1e5  # m of a path to follow
 
 
 def as_robot(grid: Any, robot: Any, config: Any) -> Robot:
-    """The robot as it may drive, by its name or itself; InputError for a part of a wrong type."""
+    """The robot as it may drive, by its name or itself; InputError for a part of a wrong type.
+
+    A drive that is faster than told by ``drive_error`` also has to brake so much harder than told, and
+    its brakes are only as strong as declared. So it is told to brake so much more gently.
+    """
     robot = choose(robot, ROBOTS, "robot") if isinstance(robot, str) else robot
     for what, value, kind in (
         ("a map", grid, OccupancyGrid),
@@ -31,9 +35,13 @@ def as_robot(grid: Any, robot: Any, config: Any) -> Robot:
             expected = f"{kind.__name__}{names}"
             raise InputError(f"{what}: got {type(value).__name__}, expected {expected}")
     assert isinstance(robot, Robot)
-    if config.reverse:
-        return robot
-    return replace(robot, limits=robot.limits._replace(v_min=max(robot.limits.v_min, 0.0)))
+    limits, faster = robot.limits, 1.0 + config.drive_error
+    told = limits._replace(
+        v_min=limits.v_min if config.reverse else max(limits.v_min, 0.0),
+        v_brake=limits.v_brake / faster,
+        omega_brake=limits.omega_brake / faster,
+    )
+    return replace(robot, limits=told)
 
 
 def as_given_path(path: Path | npt.ArrayLike, heading: float | None) -> tuple[Path, Goal]:

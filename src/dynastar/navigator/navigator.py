@@ -55,7 +55,7 @@ class Navigator:
         self.sensing = Sensing(robot, config, planning_map)
         self.progress, self.mission = Progress(config.stuck_time), Mission()
         self._last_turn, self._planner = LastTurn(config), planner
-        self._commands = Commands(robot.limits, config.period, config.latency)
+        self._commands = Commands(robot.limits, config.period, config.latency, config.drive_error)
         self.route = Route(self._planners_on(planning_map), config)
         self.retune(config.dwa)
 
