@@ -115,9 +115,7 @@ def roll_out(scene, rules, start, manoeuvre, rows):
     schedule, limits = rules.schedule, rules.limits
     obstacles, cost_to_go = scene.distance_to_obstacle, scene.cost_to_go
     state, gap = start.state, start.gap
-    near = (
-        obstacles.resolution + rules.body.probe_error
-    )  # m of gap, beyond which nothing is touched
+    near = obstacles.resolution + rules.body.probe_error  # m, a gap beyond which nothing is touched
     held = max(1, round(manoeuvre.hold / schedule.period))
     on_map, blocked, k = True, False, 0
     for i in range(len(rows)):

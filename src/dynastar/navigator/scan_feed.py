@@ -18,9 +18,7 @@ ENOUGH = 0.02  # of the beams contradict a scan that repeats
 AT_REST = 0.01  # m/s and rad/s up to which the robot is at rest
 FIRST_WAIT = 2.0  # s at rest before a lidar that seems frozen is tried again; doubles each time
 LONGEST_WAIT = 60.0  # s
-SILENT = (
-    5.0  # s without a newer scan, after which nothing is kept of a lidar; no less than scan_age
-)
+SILENT = 5.0  # s without a scan, after which a lidar is forgotten; no less than scan_age
 NO_VALID_RANGE = (
     "the scan has no valid range: its readings are NaN, beyond range_max or within the robot's own "
     "footprint (if the driver writes them for no return, add them to lidar.nothing)"
