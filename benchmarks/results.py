@@ -6,8 +6,9 @@
     python benchmarks/results.py --data DIR --pages        # only the pages, from what is there
     python benchmarks/results.py --data DIR --missions 2   # a trial, which is never written into pages
 
-Results are in out/results, one JSON a part. A part is done if its result is of the sources (`src`) of
-HEAD; one that was cut off goes on where it ended.
+Results are in out/results, one JSON a part; with the pages they are kept in docs/measured, from where
+another clone takes them. A part is done if its result is of the sources (`src`) of HEAD; one that was cut
+off goes on where it ended.
 """
 
 import argparse
@@ -20,9 +21,11 @@ import time
 from collections.abc import Sequence
 from datetime import date
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
+import results_kept
 import results_pages
+from results_kept import is_done, read_record
 from results_parts import Part, parts
 
 import dynastar
@@ -31,9 +34,8 @@ from dynastar.bench.selection import REPORT_SEEDS
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "out" / "results"
+KEPT = ROOT / "docs" / "measured"
 IMPORTED = Path(dynastar.__file__).resolve().parent
-
-Record = dict[str, dict[str, Any]]  # by part
 
 
 class Source(NamedTuple):
@@ -72,19 +74,6 @@ def machine() -> str:
         lines = []
     names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
     return f"{names[0] if names else 'unknown processor'}, {os.cpu_count()} cores"
-
-
-def read_record(folder: Path) -> Record:
-    """What was measured in a folder: by part the sources, machine, date and minutes."""
-    file = folder / "record.json"
-    found: Record = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
-    return found
-
-
-def is_done(part: str, record: Record, tree: str, folder: Path) -> bool:
-    """Whether a part was measured to its end on these sources."""
-    of = record.get(part, {})
-    return of.get("tree") == tree and of["complete"] and (folder / f"{part}.json").is_file()
 
 
 def command_of(part: Part, folder: Path, missions: int | None) -> list[str]:
@@ -154,6 +143,7 @@ def write_pages(everything: Sequence[Part], sources: Source) -> None:
     for line in results_pages.write(ROOT, found, {name: record[name] for name in done}):
         print(line)
     results_pages.copy_pictures(FOLDER / "paper", done)
+    results_kept.keep(FOLDER, KEPT, done)
 
 
 def main(words: Sequence[str] | None = None) -> int:
@@ -168,6 +158,7 @@ def main(words: Sequence[str] | None = None) -> int:
     )
     arguments = parser.parse_args(words)
     sources, everything = source(), parts()
+    results_kept.restore(KEPT, FOLDER, sources.tree)
     if arguments.list:
         show(everything, sources)
         return 0

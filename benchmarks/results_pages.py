@@ -25,7 +25,6 @@ Found = Mapping[str, Any]  # the result of each part
 Record = Mapping[str, Mapping[str, Any]]  # of each part: tree, commit, machine, date, minutes
 
 README, BENCHMARKS, PAPER = "README.md", "docs/benchmarks.md", "docs/paper.md"
-RECORD = "docs/measured.json"
 TABLES = {  # of the paper's page, by part
     "presets": ("presets",),
     "table1": tuple(
@@ -157,7 +156,7 @@ def header(page: str, record: Record) -> str:
 
 
 def write(root: Path, found: Found, record: Record) -> list[str]:
-    """Writes the pages and the record of what they show; what was written, in words."""
+    """Writes the pages; what was written, in words."""
     said = []
     for page in PAGES:
         file = root / page
@@ -171,12 +170,15 @@ def write(root: Path, found: Found, record: Record) -> list[str]:
         missing = [name for name in parts_of(page) if name not in found]
         left = f"; missing: {', '.join(missing)}" if missing else ""
         said.append(f"{page}: {len(blocks)} blocks{left}")
-    io.write_json(root / RECORD, record)
     return said
 
 
 def copy_pictures(folder: Path, done: Sequence[str]) -> None:
-    """Copies the paper's pictures of the parts that are done to where its page shows them."""
+    """Copies the paper's pictures of the parts that are done to where its page shows them.
+
+    Of a part that was measured in another clone they are there already.
+    """
     for part in PICTURES:
         for name in PICTURES[part] if part in done else ():
-            shutil.copy(folder / f"{name}.png", Path(scoreboard.DOCS, "media", "paper"))
+            if (picture := folder / f"{name}.png").is_file():
+                shutil.copy(picture, Path(scoreboard.DOCS, "media", "paper"))

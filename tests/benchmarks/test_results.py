@@ -1,5 +1,6 @@
 """Parts are measured once for each state of the sources, and one that was cut off goes on."""
 
+import gzip
 import json
 import sys
 from pathlib import Path
@@ -94,7 +95,8 @@ def test_a_part_that_is_interrupted_is_recorded_as_begun(tmp_path, monkeypatch):
 def command(tmp_path, monkeypatch, runs):
     """The command in a folder of its own; the pages that it would write are returned."""
     written = []
-    monkeypatch.setattr(results, "FOLDER", tmp_path)
+    monkeypatch.setattr(results, "FOLDER", tmp_path / "results")
+    monkeypatch.setattr(results, "KEPT", tmp_path / "kept")
     monkeypatch.setattr(results, "IMPORTED", results.ROOT / "src" / "dynastar")
     monkeypatch.setattr(results, "source", lambda: NOW)
     monkeypatch.setattr(results, "git", lambda *words: "")
@@ -114,9 +116,44 @@ def test_a_trial_is_not_written_into_the_pages(tmp_path, command, runs):
     assert results.main(["--data", str(tmp_path), "--only", "barn", "--missions", "2"]) == 0
     assert runs == ["barn"]
     assert command == []
-    assert results.read_record(tmp_path) == {}
+    assert results.read_record(tmp_path / "results") == results.read_record(tmp_path / "kept") == {}
     with pytest.raises(SystemExit, match="no part was measured"):
         results.main(["--data", str(tmp_path), "--pages"])
+
+
+def test_another_clone_takes_what_was_kept_of_the_same_sources(
+    tmp_path, command, runs, monkeypatch
+):
+    asked = ["--data", str(tmp_path), "--only"]
+    results.main([*asked, "barn", "maps"])
+    assert sorted(file.name for file in (tmp_path / "kept").iterdir()) == [
+        "barn.json.gz",
+        "record.json",
+    ]
+    monkeypatch.setattr(results, "FOLDER", tmp_path / "other")
+    results.main([*asked, "barn", "mrpb"])
+    assert runs == ["barn", "maps", "mrpb"]
+    assert command[-1][0] == {"barn": {}, "mrpb": {}}
+    first, second = (results.read_record(tmp_path / name) for name in ("results", "other"))
+    assert first["barn"] == second["barn"]
+    monkeypatch.setattr(results, "source", lambda: BEFORE)
+    monkeypatch.setattr(results, "FOLDER", tmp_path / "third")
+    results.main([*asked, "mrpb"])
+    assert command[-1][0] == {"mrpb": {}}
+    assert not (tmp_path / "kept" / "barn.json.gz").exists()
+    assert set(results.read_record(tmp_path / "kept")) == {"mrpb"}
+
+
+def test_what_is_kept_is_the_same_bytes_each_time(tmp_path):
+    kept = tmp_path / "kept"
+    (tmp_path / "barn.json").write_text('{"rows": [1, 2]}')
+    results.results_kept.io.write_json(tmp_path / "record.json", {"barn": {"tree": "t"}})
+    packed = []
+    for _ in range(2):
+        results.results_kept.keep(tmp_path, kept, ["barn"])
+        packed.append((kept / "barn.json.gz").read_bytes())
+    assert packed[0] == packed[1]
+    assert gzip.decompress(packed[0]) == b'{"rows": [1, 2]}'
 
 
 def test_changed_sources_are_not_measured(tmp_path, command, runs, monkeypatch):
