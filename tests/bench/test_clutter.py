@@ -68,11 +68,12 @@ def test_the_tables_count_each_density_driver_and_speed():
         row(0.05, "default", 0, "arrived", length=30.0, time=60.0),
         row(0.05, "printed", 1, "contact", contacts_moving=1),
         row(0.05, "default", 1, "contact", contacts_resting=1),
-        row(paper.OCCUPIED, "default", 0, "arrived", 1.5, length=30.0, time=70.0),
+        row(paper.OCCUPIED, "default", 3, "arrived", 1.5, length=30.0, time=70.0),
     ]
     assert clutter.summary(rows)[1]["arrived_interval"] == wilson(1, 2)
     half, none = "9 to 91", "0 to 66"
     densities, speeds = clutter.tables(rows)
+    assert "were 0 of 2 with 5 % occupied, 3 of 4 with 20 % occupied." in densities.notes
     assert densities.cells[1:] == [
         ["5 % occupied", "printed", "2", "0", none, "1", half, "0", none, "1", ""],
         ["5 % occupied", "default", "2", "1", half, "0", none, "1", half, "0", "60.0"],

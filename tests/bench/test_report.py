@@ -48,6 +48,13 @@ def test_the_json_of_table3_has_its_tables_in_markdown(tmp_path, capsys):
     for ratio in ("length_ratio", "turning_ratio"):
         assert set(found[ratio]) == {"median", "p95", "worst"}
     assert set(result["tables"]) == {"table3-own", "table3", "table3-presets", "table3-driving"}
+    assert {name: len(rows) for name, rows in result["rows"].items()} == {
+        "table3-default": 2,
+        "table3-paper": 2,
+        "table3-printed": 1,
+        "table3-plain": 1,
+        "table3-alone": 1,
+    }
     assert result["tables"]["table3"].startswith("**Table III over 2 worlds**")
     assert "| hybrid, length m |" in result["tables"]["table3"]
 

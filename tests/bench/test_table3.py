@@ -91,14 +91,28 @@ def test_nothing_arrived_is_no_figure_and_no_error():
         assert table.title in as_text(table)
 
 
+def test_who_drives_is_compared_with_the_default_in_the_same_worlds():
+    moved = [row(number, 30.0, 3) for number in range(9)]
+    touched = [{**of, "outcome": "contact", "contacts_resting": 1} for of in moved]
+    by_driver = {"default": moved, "printed": touched[:7], "plain": touched[:1] + moved[1:3]}
+    by_driver["alone"] = moved[:4] + touched[4:5]
+    table = table3_tables.tables(by_driver, ROWS[0])[2]
+    assert [line[7:10] for line in table.cells[1:-1]] == [
+        ["", "", ""],
+        ["7", "0", "0.047"],  # Holm: three times 2 / 2^7
+        ["1", "0", "1.000"],
+        ["1", "0", "1.000"],
+    ]
+
+
 def test_the_tables_have_the_printed_figures_beside():
     by_preset = {"default": ROWS[:3], "printed": ROWS[2:]}
     own, many, presets, driving = table3_tables.tables(by_preset, row(None, 28.0, 6, 32.0, 12))
     assert [cells[0] for cells in presets.cells] == ["", "default", "printed", "in print"]
     assert presets.cells[1][1:3] == ["3", "2"]
-    assert presets.cells[1][7:] == ["1.100", "2.000", "66.0"]
-    assert presets.cells[2][7:] == ["", "", ""]
-    assert presets.cells[3][7:9] == ["0.879", "0.571"]
+    assert presets.cells[1][7:] == ["", "", "", "1.100", "2.000", "66.0"]
+    assert presets.cells[2][7:] == ["0", "0", "1.000", "", "", ""]
+    assert presets.cells[3][10:12] == ["0.879", "0.571"]
     assert own.cells[1:] == [
         ["improved A*, grid path", "32.0", "12", "33", "7"],
         ["hybrid", "28.0", "6", "29", "4"],

@@ -68,14 +68,16 @@ def summary(rows: Sequence[Row]) -> list[dict[str, Any]]:
 def tables(rows: Sequence[Row]) -> list[Table]:
     """A line for each density and what drives there; one for each speed of the walker."""
     here = f"The suite's own are {100.0 * paper.OCCUPIED:.0f} % and {paper.MOVER_SPEED:g} m/s."
-    notes = f"Worlds of the suite paper. {here} Intervals are Wilson's."
+    means = "Mean times are over the worlds in which it arrived."
+    notes = f"Worlds of the suite paper. {here} {means} Intervals are Wilson's."
     return [
         _table(
             "clutter",
             "Over clutter",
             [of for of in summary(rows) if of["speed"] == paper.MOVER_SPEED],
             lambda of: f"{100.0 * of['occupied']:.0f} % occupied",
-            f"{notes} Without occupied cells all worlds are one.",
+            f"{notes} Without occupied cells all worlds are one. The worlds are the first that are "
+            f"possible; left out before the last of them were {_left_out(rows)}.",
         ),
         _table(
             "walker",
@@ -89,6 +91,17 @@ def tables(rows: Sequence[Row]) -> list[Table]:
             notes,
         ),
     ]
+
+
+def _left_out(rows: Sequence[Row]) -> str:
+    """For each density how many worlds the suite's rule left out, of how many, in words."""
+    numbers: dict[float, set[int]] = {}
+    for row in rows:
+        numbers.setdefault(row["occupied"], set()).add(row["number"])
+    return ", ".join(
+        f"{max(of) + 1 - len(of)} of {max(of) + 1} with {100.0 * occupied:.0f} % occupied"
+        for occupied, of in sorted(numbers.items())
+    )
 
 
 def _table(

@@ -137,7 +137,7 @@ def table(found: Found) -> Table:
             ("p", ""),
         ),
         [_line(step, of) for step, of in found.items()],
-        "Each line has one change more than the line above. Time and length are means over the worlds in "
+        "Each line adds what it names to the line above. Time and length are means over the worlds in "
         "which that step arrived. Lost and gained: worlds in which only the line above, and only this "
         "one, arrived without contact; p is McNemar's exact test of these, corrected by Holm over all "
         "lines. The interval is Wilson's.",

@@ -130,6 +130,7 @@ def measure(drawn: Map, slow: bool = True) -> Row:
     fast = partial(smooth, drawn.occupied, radius=0.0)
     smoothings: dict[str, Callable[[], Any]] = {
         "traditional, smoothed": partial(fast, ways["traditional"]),
+        "weighted, smoothed": partial(fast, ways["weighted, w = 2"]),
         "improved, fast": partial(fast, ways["improved"]),
     }
     smoothed = _timed(smoothings)

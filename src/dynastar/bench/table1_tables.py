@@ -20,6 +20,7 @@ ARMS: dict[str, tuple[str, str | None]] = {
     "traditional A* (octile)": ("traditional, octile", None),
     "weighted A*, w = 2": ("weighted, w = 2", None),
     "traditional, fast smoothing": ("traditional", "traditional, smoothed"),
+    "weighted, fast smoothing": ("weighted, w = 2", "weighted, smoothed"),
     "improved A*, grid path": ("improved", None),
     "improved, fast smoothing": ("improved", "improved, fast"),
     "improved, any angle": ("improved", "improved, any angle"),

@@ -77,7 +77,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=path, metavar="DIR", help="default out/paper")
     parser.add_argument("--workers", type=count, metavar="N", help="processes (default: all cores)")
     parser.add_argument(
-        "--json-out", metavar="FILE", help="all figures, and the tables in Markdown; - is stdout"
+        "--json-out",
+        metavar="FILE",
+        help="all figures, rows, and the tables in Markdown; - is stdout",
     )
     add_set(parser)
 
@@ -107,11 +109,12 @@ def execute(arguments: argparse.Namespace) -> int:
     )
     prepare()
     names = list(REPORTS) if arguments.what == "all" else [arguments.what]
-    result: dict[str, Any] = {"seed": asked.seed, "maps": asked.maps, "tables": {}}
+    result: dict[str, Any] = {"seed": asked.seed, "maps": asked.maps, "tables": {}, "rows": {}}
 
     def give(report: "Report") -> None:
         write(report, asked.folder)
         result.update(report.found)
+        result["rows"].update(report.rows)
         result["tables"].update({table.name: as_markdown(table) for table in report.tables})
         if arguments.json_out != "-":
             for table in report.tables:

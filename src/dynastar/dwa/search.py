@@ -85,7 +85,7 @@ def fill_candidates(scene, rules, start, candidates):
 def is_considered(i, candidate, tail, long, scene, limits):
     """Whether a candidate is rolled out with a tail, and held for the ``long`` time.
 
-    A long hold is considered only at speed and nearly straight on.
+    A long hold is considered only from a tenth of v_max on, and up to 2 rad/s.
     """
     if i == LAST:
         return tail == scene.last.tail and not long
