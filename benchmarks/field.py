@@ -1,8 +1,9 @@
-"""Distance fields beside scipy's: ``python benchmarks/field.py``.
+"""Distance fields beside those of others: ``python benchmarks/field.py``.
 
-``dynastar.clearance.distance_field`` (OpenCV's exact transform, one thread) and scipy's
-``distance_transform_edt`` on maps of 1000 x 1000 cells, in turns, warm, the best of some times; the
-fields are asserted to be the same to 0.001 cells. Below, what a robot has to keep up to date: an local
+``dynastar.clearance.distance_field`` (OpenCV's exact transform, one thread), scipy's
+``distance_transform_edt`` and the package edt (one thread; left out if it is not installed) on maps of
+1000 x 1000 cells, in turns, warm, the best of some times; the fields are asserted to be the same to 0.001
+cells. Below, what a robot has to keep up to date: an local
 map of 200 x 200 cells (10 m at 5 cm) that a scan changed or that moved on by a metre, and the same
 window of the large map where only distances up to 2 m matter (``update_window``).
 """
@@ -15,6 +16,11 @@ import cv2
 import numpy as np
 from maps import office, random_cells, rooms
 from scipy.ndimage import distance_transform_edt
+
+try:
+    import edt
+except ImportError:
+    edt = None
 
 from dynastar import Lidar, OccupancyGrid, Pose2D
 from dynastar.clearance import distance_field, update_window
@@ -72,15 +78,17 @@ def main() -> None:
         "rooms 65": rooms(N, 65, 0),
         "office": office(N, 0),
     }
-    print(f"{'ms, ' + str(N) + ' x ' + str(N):16}{'dynastar':>10}{'scipy':>10}{'ratio':>8}")
+    print(f"{'ms, 1000 x 1000':16}{'dynastar':>10}{'scipy':>10}{'ratio':>8}{'edt':>10}{'ratio':>8}")
     for name, occupied in maps.items():
         free = ~occupied
         field = distance_field(occupied, 1.0)
         assert np.abs(field - distance_transform_edt(free)).max() < 1e-3
-        own, other = least(
-            lambda o=occupied: distance_field(o, 1.0), lambda f=free: distance_transform_edt(f)
-        )
-        print(f"{name:16}{own:10.2f}{other:10.2f}{own / other:8.2f}")
+        runs = [lambda o=occupied: distance_field(o, 1.0), lambda f=free: distance_transform_edt(f)]
+        if edt is not None:
+            assert np.abs(field - edt.edt(free, parallel=1)).max() < 1e-3
+            runs.append(lambda f=free: edt.edt(f, parallel=1))
+        own, *others = least(*runs)
+        print(f"{name:16}{own:10.2f}" + "".join(f"{ms:10.2f}{own / ms:8.2f}" for ms in others))
     print(
         f"\n{'ms, 200 x 200':16}{'local map':>10}{'moved on':>10}{'window of the map, capped':>28}"
     )
