@@ -44,9 +44,9 @@ def lines(text):
     return text.splitlines()
 
 
-def difficulties(easy, medium, hard, missions=40):
+def difficulties(easy, medium, hard, missions=40, at=""):
     of = {"easy": easy, "medium": medium, "hard": hard}
-    return {name: result(succeeded, missions) for name, succeeded in of.items()}
+    return {name + at: result(succeeded, missions) for name, succeeded in of.items()}
 
 
 @pytest.fixture
@@ -58,7 +58,10 @@ def measured():
     spreads = {name: {"median": m, "p95": p} for name, (m, p) in ratios.items()}
     return found | {
         "barn": result(150, 150, 0, score=0.4955),
-        "dynabarn": result(groups=difficulties(39, 38, 33)),
+        "dynabarn": result(groups=difficulties(40, 39, 33)),
+        "crowdnav_variants": result(
+            groups={"visible": result(199, 200), "square": result(10, 10), "ten": result(10)}
+        ),
         "robots": result(197, 200, 0),
         "physics": result(49, 50, 0, 1),
         "office": result(40, 40, 0, rows=[row(time=87.0), row(time=91.94)]),
@@ -75,7 +78,7 @@ def test_a_target_is_met_or_missed_with_the_command_beside_it(measured):
             "`dynastar bench barn --seed 10000` | 99 %, 0.495 | 150 of 150, 0.495 |"
         ),
         "DynaBARN: easy, medium, hard": (
-            "`dynastar bench dynabarn --seed 10000` | 97, 93, 78 % | 39, 38, 33 of 40 |"
+            "`dynastar bench dynabarn --seed 10000` | 98, 96, 80 % | 40, 39, 33 of 40 |"
         ),
         "MRPB: arrived, time over the bound": (
             "`dynastar bench mrpb --seed 10000` | all, 1.3 | 9 of 10, 1.31, 1 moving contact: missed |"
@@ -91,8 +94,8 @@ def test_a_target_is_met_or_missed_with_the_command_beside_it(measured):
             "the slowest 91.9 s |"
         ),
         "people who do not react": (
-            "`dynastar bench people --missions 160 --attention none --seed 10000` | 72 % | 9 of 10, "
-            "1 moving contact |"
+            "`dynastar bench people --missions 160 --attention none --seed 10000` | 72 %, 10 % | "
+            "9 of 10, 1 moving contact |"
         ),
         "worlds like the paper's: arrived, moving contacts": (
             "`dynastar paper table3` | 99.5 %, 0.2 % | 99.6 %, 0.1 % of 1000 |"
@@ -105,8 +108,40 @@ def test_a_target_is_met_or_missed_with_the_command_beside_it(measured):
 
 
 def test_a_difficulty_below_its_share_is_missed(measured):
-    measured["dynabarn"] = result(groups=difficulties(39, 38, 31))
-    assert "39, 38, 31 of 40: missed |" in targets_table(measured, PARTS)
+    measured["dynabarn"] = result(groups=difficulties(40, 39, 31))
+    assert "40, 39, 31 of 40: missed |" in targets_table(measured, PARTS)
+
+
+@pytest.mark.parametrize(
+    ("result_", "said"),
+    [
+        (
+            result(495, 500, 1, 4, mean_time=11.0),
+            "495 of 500, 1 moving contact, 4 contacts at rest, 11.0 s |",
+        ),
+        (
+            result(495, 500, 2, 3, mean_time=11.0),
+            "2 moving contacts, 3 contacts at rest, 11.0 s: missed |",
+        ),
+        (
+            result(494, 500, 0, 6, mean_time=11.0),
+            "494 of 500, 6 contacts at rest, 11.0 s: missed |",
+        ),
+        (result(500, 500, 0, 0, mean_time=11.1), "500 of 500, no contact, 11.1 s: missed |"),
+    ],
+)
+def test_among_people_arrivals_moving_contacts_and_time_count(measured, result_, said):
+    measured["crowdnav"] = result_
+    [line] = [of for of in lines(targets_table(measured, PARTS)) if "`crowdnav`:" in of]
+    assert line.endswith(said)
+
+
+def test_the_slower_of_two_crowds_is_missed(measured):
+    measured["crowd_late"] = result(100, 100, 2, time_ratio=1.35)
+    measured["crowd_none"] = result(100, 100, 2, time_ratio=1.36)
+    late, none = (of for of in lines(targets_table(measured, PARTS)) if "recorded crowds" in of)
+    assert late.endswith("| 100 of 100, 2 moving contacts, 1.35 |")
+    assert none.endswith("| 100 of 100, 2 moving contacts, 1.36: missed |")
 
 
 def test_every_target_names_a_part():
@@ -166,7 +201,7 @@ def test_every_variant_has_as_many_cases_and_the_first_ones():
 
 def test_dynabarn_at_half_a_metre_a_second():
     touched = [row(contact_after_jump=True), row(contact_after_jump=False), row()]
-    of = result(30, 60, 17, 13, groups=difficulties(18, 11, 1, 20), rows=touched)
+    of = result(30, 60, 17, 13, groups=difficulties(18, 11, 1, 20, " 0.5 m/s"), rows=touched)
     shown = tables.slow_table({"dynabarn_slow": of})
     assert "\n| navigator, 60 missions | 0.90 | 0.55 | 0.05 | 0.50 |\n" in shown
     assert shown.endswith(
