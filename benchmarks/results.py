@@ -143,7 +143,7 @@ def write_pages(everything: Sequence[Part], sources: Source) -> None:
     for line in results_pages.write(ROOT, found, {name: record[name] for name in done}):
         print(line)
     results_pages.copy_pictures(FOLDER / "paper", done)
-    results_kept.keep(FOLDER, KEPT, done)
+    results_kept.keep(FOLDER, KEPT, sources.tree)
 
 
 def main(words: Sequence[str] | None = None) -> int:

@@ -1,11 +1,12 @@
 """Results that are kept in the repository: measured over days, they let a reader check the tables.
 
-docs/measured has the result of each part with the rows of its missions, packed by gzip, and record.json.
+docs/measured has the result of each part with the rows of its missions, packed by gzip, the rows of parts
+that were cut off, and record.json.
 """
 
 import gzip
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from dynastar import io
 Record = dict[str, dict[str, Any]]  # of each part: tree, commit, machine, date, minutes, complete
 
 RECORD = "record.json"
+PACKED = ".gz"
 
 
 def read_record(folder: Path) -> Record:
@@ -29,28 +31,34 @@ def is_done(part: str, record: Mapping[str, Mapping[str, Any]], tree: str, folde
     return of.get("tree") == tree and of["complete"] and (folder / f"{part}.json").is_file()
 
 
-def keep(folder: Path, kept: Path, done: Sequence[str]) -> None:
-    """Packs the results of the parts that are done; those of all others are removed."""
-    kept.mkdir(parents=True, exist_ok=True)
-    for file in kept.glob("*.json.gz"):
-        if file.name.removesuffix(".json.gz") not in done:
-            file.unlink()
-    for part in done:
-        text = (folder / f"{part}.json").read_bytes()
-        with io.written_aside(kept / f"{part}.json.gz") as aside:
-            aside.write_bytes(gzip.compress(text, mtime=0))
-    record = read_record(folder)
-    io.write_json(kept / RECORD, {part: record[part] for part in done})
+def files_of(part: str, complete: bool, folder: Path, packed: str = "") -> list[Path]:
+    """The result of a part; of one that was cut off, the rows that it has so far."""
+    if complete:
+        return list(folder.glob(f"{part}.json{packed}"))
+    rows = (f"{part}.json.rows.jsonl{packed}", f"paper/{part}*.jsonl{packed}")
+    return [file for name in rows for file in folder.glob(name)]
+
+
+def keep(folder: Path, kept: Path, tree: str) -> None:
+    """Packs what was measured on these sources; all else is removed."""
+    record = {part: of for part, of in read_record(folder).items() if of["tree"] == tree}
+    files = [file for part, of in record.items() for file in files_of(part, of["complete"], folder)]
+    packed = {kept / f"{file.relative_to(folder)}{PACKED}": file for file in files}
+    for old in set(kept.rglob(f"*{PACKED}")) - set(packed):
+        old.unlink()
+    for name, file in packed.items():
+        with io.written_aside(name) as aside:
+            aside.write_bytes(gzip.compress(file.read_bytes(), mtime=0))
+    io.write_json(kept / RECORD, record)
 
 
 def restore(kept: Path, folder: Path, tree: str) -> None:
-    """Unpacks the results that were kept of these sources, unless they are there."""
+    """Unpacks what was kept of these sources, but for parts that are begun or done in ``folder``."""
     record = read_record(folder)
     for part, of in read_record(kept).items():
-        file = kept / f"{part}.json.gz"
-        if of["tree"] != tree or is_done(part, record, tree, folder) or not file.is_file():
+        if of["tree"] != tree or record.get(part, {}).get("tree") == tree:
             continue
-        folder.mkdir(parents=True, exist_ok=True)
-        with io.written_aside(folder / f"{part}.json") as aside:
-            aside.write_bytes(gzip.decompress(file.read_bytes()))
+        for file in files_of(part, of["complete"], kept, PACKED):
+            with io.written_aside(folder / file.relative_to(kept).with_suffix("")) as aside:
+                aside.write_bytes(gzip.decompress(file.read_bytes()))
         io.write_json(folder / RECORD, record := {**record, part: of})

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import results_tables as tables
 import scoreboard_page as scoreboard
 import simulators_page as simulators
-from results_parts import parts
+from results_parts import MAPS_BESIDE, parts
 from results_targets import TARGETS, targets_table
 
 from dynastar import io
@@ -87,7 +87,7 @@ BLOCKS = (
     of_scoreboard("controllers", scoreboard.controllers_table),
     of_scoreboard("pictures", lambda of: scoreboard.pictures(failures(of))),
     Block(BENCHMARKS, "attention", ATTENTION, tables.attention_table),
-    Block(BENCHMARKS, "quality", ("scoreboard",), tables.quality_table),
+    Block(BENCHMARKS, "quality", ("maps", MAPS_BESIDE), tables.quality_table),
     Block(BENCHMARKS, "crowdnav", ("crowdnav", "crowdnav_orca"), tables.crowdnav_table),
     Block(
         BENCHMARKS,

@@ -12,6 +12,7 @@ DYNASTAR = ("-m", "dynastar")
 INDIFFERENT = (
     "people_none"  # what the parts of other controllers among indifferent people begin with
 )
+MAPS_BESIDE = "maps-pure_pursuit"
 VARIANT_CASES = 100  # of each variant of crowdnav
 
 
@@ -39,9 +40,9 @@ def bench(name: str, minutes: int, *options: str, suite: str = "") -> Part:
     return Part(name, minutes, (*DYNASTAR, "bench", suite or name, *options))
 
 
-def paper(name: str, minutes: int) -> Part:
+def paper(name: str, minutes: int, *options: str) -> Part:
     """A part that is an experiment of `dynastar paper`."""
-    return Part(name, minutes, (*DYNASTAR, "paper", name))
+    return Part(name, minutes, (*DYNASTAR, "paper", name, *options))
 
 
 def installed(controller: str) -> bool:
@@ -96,12 +97,13 @@ def parts() -> list[Part]:
         ),
         bench("crowdnav_variants", 5, "--select", variant_cases(), suite="crowdnav"),
         bench("maps", 5),
+        bench(MAPS_BESIDE, 3, "--controller", "pure_pursuit", suite="maps"),
         bench("random", 5, "--missions", "200"),
         bench("physics", 6),
         bench("robots", 8),
         paper("clutter", 30),
-        Part("scoreboard", 20, ("benchmarks/scoreboard.py",)),
+        Part("scoreboard", 30, ("benchmarks/scoreboard.py",)),
         paper("table3", 90),
         paper("ladder", 50),
-        paper("ablation", 100),
+        paper("ablation", 80, "--worlds", "80"),
     ]

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from statistics import fmean
 from typing import Any
 
-from results_parts import INDIFFERENT
+from results_parts import INDIFFERENT, MAPS_BESIDE
 from results_targets import contacts_of, counted
 
 from dynastar.bench.statistics import wilson
@@ -79,10 +79,9 @@ def attention_table(found: Found) -> str:
 
 def quality_table(found: Found) -> str:
     """Means of the navigator and of `pure_pursuit` in `maps`, over missions in which both arrived."""
-    suites = found["scoreboard"]["suites"], found["scoreboard"]["others"]["pure_pursuit"]
     pairs = [
         pair
-        for pair in zip(*(of["maps"]["rows"] for of in suites), strict=True)
+        for pair in zip(found["maps"]["rows"], found[MAPS_BESIDE]["rows"], strict=True)
         if all(row["outcome"] == "arrived" for row in pair)
     ]
     lines = []

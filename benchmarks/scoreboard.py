@@ -1,5 +1,7 @@
 """Runs the missions of `dynastar bench all --quick`, but of a report seed: for published tables only.
 
+As there, the other controllers drive every second one.
+
 python benchmarks/scoreboard.py --seed 10000 --json-out all.json
 """
 
@@ -9,7 +11,7 @@ from pathlib import Path
 
 from dynastar import io
 from dynastar.bench.missions import Options
-from dynastar.bench.scoreboard import QUICK_COMPETITORS, run_all
+from dynastar.bench.scoreboard import QUICK_COMPETITORS, QUICK_EVERY, run_all
 from dynastar.cli.compiling import prepare
 
 if __name__ == "__main__":
@@ -26,6 +28,6 @@ if __name__ == "__main__":
         quick=arguments.missions is None,
         workers=os.cpu_count() or 1,
     )
-    result = run_all(options, progress=True, keep=keep, others=QUICK_COMPETITORS)
+    result = run_all(options, progress=True, keep=keep, others=QUICK_COMPETITORS, every=QUICK_EVERY)
     io.write_json(arguments.json_out, result)
     keep.unlink()

@@ -50,6 +50,7 @@ def test_a_part_is_run_on_worlds_that_are_for_report(tmp_path):
     words = results.command_of(PARTS["table3"], tmp_path, 2)
     assert words[1:5] == ["-m", "dynastar", "paper", "table3"]
     assert words[-4:] == ["--out", str(tmp_path / "paper"), "--maps", "2"]
+    assert "--worlds 80 --seed" in " ".join(results.command_of(PARTS["ablation"], tmp_path, None))
     assert results.command_of(PARTS["maps"], tmp_path, 2)[-2:] == ["--missions", "2"]
 
 
@@ -124,12 +125,9 @@ def test_a_trial_is_not_written_into_the_pages(tmp_path, command, runs):
 def test_another_clone_takes_what_was_kept_of_the_same_sources(
     tmp_path, command, runs, monkeypatch
 ):
-    asked = ["--data", str(tmp_path), "--only"]
+    asked, kept = ["--data", str(tmp_path), "--only"], tmp_path / "kept"
     results.main([*asked, "barn", "maps"])
-    assert sorted(file.name for file in (tmp_path / "kept").iterdir()) == [
-        "barn.json.gz",
-        "record.json",
-    ]
+    assert sorted(file.name for file in kept.iterdir()) == ["barn.json.gz", "record.json"]
     monkeypatch.setattr(results, "FOLDER", tmp_path / "other")
     results.main([*asked, "barn", "mrpb"])
     assert runs == ["barn", "maps", "mrpb"]
@@ -140,17 +138,39 @@ def test_another_clone_takes_what_was_kept_of_the_same_sources(
     monkeypatch.setattr(results, "FOLDER", tmp_path / "third")
     results.main([*asked, "mrpb"])
     assert command[-1][0] == {"mrpb": {}}
-    assert not (tmp_path / "kept" / "barn.json.gz").exists()
-    assert set(results.read_record(tmp_path / "kept")) == {"mrpb"}
+    assert not (kept / "barn.json.gz").exists()
+    assert set(results.read_record(kept)) == {"mrpb"}
+
+
+def test_another_clone_goes_on_where_a_part_was_cut_off(tmp_path):
+    here, kept, there = (tmp_path / name for name in ("here", "kept", "there"))
+    begun = {
+        part: {"tree": "now", "minutes": 7.0, "complete": False} for part in ("maps", "table3")
+    }
+    results.results_kept.io.write_json(here / "record.json", begun)
+    (here / "paper").mkdir()
+    rows = ("maps.json.rows.jsonl", "paper/table3-default.jsonl", "paper/table3-paper.jsonl")
+    for name in (*rows, "paper/table1.jsonl"):
+        (here / name).write_text(f"rows of {name}")
+    results.results_kept.keep(here, kept, "now")
+    results.results_kept.restore(kept, there, "now")
+    assert results.read_record(there) == begun
+    for name in rows:
+        assert (there / name).read_text() == f"rows of {name}"
+    assert not (there / "paper/table1.jsonl").exists()
+    (there / rows[0]).write_text("more rows")
+    results.results_kept.restore(kept, there, "now")
+    assert (there / rows[0]).read_text() == "more rows"
 
 
 def test_what_is_kept_is_the_same_bytes_each_time(tmp_path):
     kept = tmp_path / "kept"
     (tmp_path / "barn.json").write_text('{"rows": [1, 2]}')
-    results.results_kept.io.write_json(tmp_path / "record.json", {"barn": {"tree": "t"}})
+    record = {"barn": {"tree": "t", "complete": True}}
+    results.results_kept.io.write_json(tmp_path / "record.json", record)
     packed = []
     for _ in range(2):
-        results.results_kept.keep(tmp_path, kept, ["barn"])
+        results.results_kept.keep(tmp_path, kept, "t")
         packed.append((kept / "barn.json.gz").read_bytes())
     assert packed[0] == packed[1]
     assert gzip.decompress(packed[0]) == b'{"rows": [1, 2]}'

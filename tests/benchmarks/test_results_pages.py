@@ -103,10 +103,10 @@ def test_pictures_of_a_part_that_was_measured_elsewhere_stay_as_they_are(tmp_pat
 def test_all_that_is_recorded_is_of_one_commit():
     for key in ("commit", "tree"):
         assert len({part[key] for part in RECORD.values()}) <= 1
-    assert all(part["complete"] for part in RECORD.values())
 
 
 @pytest.mark.parametrize("page", pages.PAGES)
 def test_the_top_of_a_page_agrees_with_the_record(page):
     document = (ROOT / page).read_text(encoding="utf-8")
-    assert between(document, "measured") == pages.header(page, RECORD)
+    done = {name: part for name, part in RECORD.items() if part["complete"]}
+    assert between(document, "measured") == pages.header(page, done)

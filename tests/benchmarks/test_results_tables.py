@@ -163,12 +163,7 @@ def quality(**more):
 def test_quality_is_compared_where_both_arrived():
     ours = [quality(smoothness=0.8, nearest=None), quality(smoothness=5.0)]
     other = [quality(smoothness=0.5, circles=0), quality(outcome="contact")]
-    found = {
-        "scoreboard": {
-            "suites": {"maps": {"rows": ours}},
-            "others": {"pure_pursuit": {"maps": {"rows": other}}},
-        }
-    }
+    found = {"maps": {"rows": ours}, tables.MAPS_BESIDE: {"rows": other}}
     head, _, first, *rest = lines(tables.quality_table(found))
     assert head == "| means of 1 missions | `navigator` | `pure_pursuit` | ratio |"
     assert first == "| `smoothness`, rad/s/m | 0.80 | 0.50 | 1.60: missed |"
