@@ -143,7 +143,7 @@ def write_pages(everything: Sequence[Part], sources: Source) -> None:
     for line in results_pages.write(ROOT, found, {name: record[name] for name in done}):
         print(line)
     results_pages.copy_pictures(FOLDER / "paper", done)
-    results_kept.keep(FOLDER, KEPT, sources.tree)
+    results_kept.keep(FOLDER, KEPT, sources.tree, os.environ["DYNASTAR_DATA"])
 
 
 def main(words: Sequence[str] | None = None) -> int:
@@ -158,11 +158,12 @@ def main(words: Sequence[str] | None = None) -> int:
     )
     arguments = parser.parse_args(words)
     sources, everything = source(), parts()
-    results_kept.restore(KEPT, FOLDER, sources.tree)
+    data = arguments.data or os.environ.get("DYNASTAR_DATA")
+    if data:
+        results_kept.restore(KEPT, FOLDER, sources.tree, os.path.abspath(data))
     if arguments.list:
         show(everything, sources)
         return 0
-    data = arguments.data or os.environ.get("DYNASTAR_DATA")
     if not data or not Path(data).is_dir():
         parser.error("give the folder of the public data sets: --data DIR, or DYNASTAR_DATA")
     os.environ["DYNASTAR_DATA"] = os.path.abspath(data)

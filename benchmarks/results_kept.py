@@ -16,6 +16,7 @@ Record = dict[str, dict[str, Any]]  # of each part: tree, commit, machine, date,
 
 RECORD = "record.json"
 PACKED = ".gz"
+DATA = b"$DYNASTAR_DATA"  # stands for the folder of the data sets, which differs from machine to machine
 
 
 def read_record(folder: Path) -> Record:
@@ -39,8 +40,8 @@ def files_of(part: str, complete: bool, folder: Path, packed: str = "") -> list[
     return [file for name in rows for file in folder.glob(name)]
 
 
-def keep(folder: Path, kept: Path, tree: str) -> None:
-    """Packs what was measured on these sources; all else is removed."""
+def keep(folder: Path, kept: Path, tree: str, data: str) -> None:
+    """Packs what was measured on these sources, with data in the folder ``data``; all else is removed."""
     record = {part: of for part, of in read_record(folder).items() if of["tree"] == tree}
     files = [file for part, of in record.items() for file in files_of(part, of["complete"], folder)]
     packed = {kept / f"{file.relative_to(folder)}{PACKED}": file for file in files}
@@ -48,11 +49,13 @@ def keep(folder: Path, kept: Path, tree: str) -> None:
         old.unlink()
     for name, file in packed.items():
         with io.written_aside(name) as aside:
-            aside.write_bytes(gzip.compress(file.read_bytes(), mtime=0))
+            aside.write_bytes(
+                gzip.compress(file.read_bytes().replace(data.encode(), DATA), mtime=0)
+            )
     io.write_json(kept / RECORD, record)
 
 
-def restore(kept: Path, folder: Path, tree: str) -> None:
+def restore(kept: Path, folder: Path, tree: str, data: str) -> None:
     """Unpacks what was kept of these sources, but for parts that are begun or done in ``folder``."""
     record = read_record(folder)
     for part, of in read_record(kept).items():
@@ -60,5 +63,5 @@ def restore(kept: Path, folder: Path, tree: str) -> None:
             continue
         for file in files_of(part, of["complete"], kept, PACKED):
             with io.written_aside(folder / file.relative_to(kept).with_suffix("")) as aside:
-                aside.write_bytes(gzip.decompress(file.read_bytes()))
+                aside.write_bytes(gzip.decompress(file.read_bytes()).replace(DATA, data.encode()))
         io.write_json(folder / RECORD, record := {**record, part: of})

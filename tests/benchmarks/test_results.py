@@ -151,15 +151,15 @@ def test_another_clone_goes_on_where_a_part_was_cut_off(tmp_path):
     (here / "paper").mkdir()
     rows = ("maps.json.rows.jsonl", "paper/table3-default.jsonl", "paper/table3-paper.jsonl")
     for name in (*rows, "paper/table1.jsonl"):
-        (here / name).write_text(f"rows of {name}")
-    results.results_kept.keep(here, kept, "now")
-    results.results_kept.restore(kept, there, "now")
+        (here / name).write_text(f"/data/here: rows of {name}")
+    results.results_kept.keep(here, kept, "now", "/data/here")
+    results.results_kept.restore(kept, there, "now", "/there")
     assert results.read_record(there) == begun
     for name in rows:
-        assert (there / name).read_text() == f"rows of {name}"
+        assert (there / name).read_text() == f"/there: rows of {name}"
     assert not (there / "paper/table1.jsonl").exists()
     (there / rows[0]).write_text("more rows")
-    results.results_kept.restore(kept, there, "now")
+    results.results_kept.restore(kept, there, "now", "/there")
     assert (there / rows[0]).read_text() == "more rows"
 
 
@@ -170,7 +170,7 @@ def test_what_is_kept_is_the_same_bytes_each_time(tmp_path):
     results.results_kept.io.write_json(tmp_path / "record.json", record)
     packed = []
     for _ in range(2):
-        results.results_kept.keep(tmp_path, kept, "t")
+        results.results_kept.keep(tmp_path, kept, "t", "/data")
         packed.append((kept / "barn.json.gz").read_bytes())
     assert packed[0] == packed[1]
     assert gzip.decompress(packed[0]) == b'{"rows": [1, 2]}'
