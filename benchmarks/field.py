@@ -3,7 +3,7 @@
 ``dynastar.clearance.distance_field`` (OpenCV's exact transform, one thread), scipy's
 ``distance_transform_edt`` and the package edt (one thread; left out if it is not installed) on maps of
 1000 x 1000 cells, in turns, warm, the best of some times; the fields are asserted to be the same to 0.001
-cells. Below, what a robot has to keep up to date: an local
+cells. Below, what a robot has to keep up to date: a local
 map of 200 x 200 cells (10 m at 5 cm) that a scan changed or that moved on by a metre, and the same
 window of the large map where only distances up to 2 m matter (``update_window``).
 """
@@ -78,7 +78,9 @@ def main() -> None:
         "rooms 65": rooms(N, 65, 0),
         "office": office(N, 0),
     }
-    print(f"{'ms, 1000 x 1000':16}{'dynastar':>10}{'scipy':>10}{'ratio':>8}{'edt':>10}{'ratio':>8}")
+    others = ("scipy",) if edt is None else ("scipy", "edt")
+    beside = "".join(f"{other:>10}{'ratio':>8}" for other in others)
+    print(f"{f'ms, {N} x {N}':16}{'dynastar':>10}{beside}")
     for name, occupied in maps.items():
         free = ~occupied
         field = distance_field(occupied, 1.0)
@@ -87,8 +89,8 @@ def main() -> None:
         if edt is not None:
             assert np.abs(field - edt.edt(free, parallel=1)).max() < 1e-3
             runs.append(lambda f=free: edt.edt(f, parallel=1))
-        own, *others = least(*runs)
-        print(f"{name:16}{own:10.2f}" + "".join(f"{ms:10.2f}{own / ms:8.2f}" for ms in others))
+        own, *theirs = least(*runs)
+        print(f"{name:16}{own:10.2f}" + "".join(f"{ms:10.2f}{own / ms:8.2f}" for ms in theirs))
     print(
         f"\n{'ms, 200 x 200':16}{'local map':>10}{'moved on':>10}{'window of the map, capped':>28}"
     )
