@@ -53,7 +53,7 @@ def field_of(closed):
 def closed_space(closed):
     """Closed cells, in each of which a hit lies at the centre."""
     hits = np.zeros(closed.shape, BOX)
-    return Closed(field_of(closed), closed, hits, lower_bounds(closed.view(np.uint8), CELL))
+    return Closed(field_of(closed), closed, hits)
 
 
 def boxes_of(closed):

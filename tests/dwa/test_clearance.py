@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dynastar.clearance import lower_bounds
 from dynastar.dwa import body_of
 from dynastar.dwa.clearance import (
     EXACT_WITHIN,
@@ -122,7 +121,7 @@ def random_space(random):
         ends = np.sort(random.uniform(-0.5 * CELL, 0.5 * CELL, (2, *closed.shape)), axis=0)
         hits[low], hits[high] = ends
     occupied = closed & (random.random(closed.shape) < 0.7)
-    return Closed(field_of(closed), occupied, hits, lower_bounds(closed.view(np.uint8), CELL))
+    return Closed(field_of(closed), occupied, hits)
 
 
 @given(footprints, st.integers(0, 10**6))

@@ -23,7 +23,7 @@ from dynastar.dwa.scene import BACK, FOLLOW, STOP, TAILS, Manoeuvre
 from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import ROBOTS, Limits, Robot
-from scenes import CELL, boxed, empty, rules_for, scattered, scene_of, start_of
+from scenes import CELL, boxed, empty, field_of, rules_for, scattered, scene_of, start_of
 
 LIMITS = Limits(1.0, 1.5, 0.8, 2.0, 0.8, 2.0, v_min=-0.3)
 ROUND = Robot("round", LIMITS, Footprint.disc(0.3))
@@ -145,6 +145,17 @@ def test_contact_while_the_sample_is_held_ends_a_roll_out():
     for front, clear in ((3.3 + 0.05 + 0.2, False), (3.3 + 0.05 + 0.45, True)):
         scene = scene_of(boxed((front, 0.0, front + 0.2, 8.0)))
         assert rolled(scene, rules, ahead, straight)[0] == clear
+
+
+def test_a_wall_on_the_map_that_lies_deep_in_unseen_space_ends_a_roll_out():
+    """Nothing beyond x = 3.5 m was seen; on the map there is a wall 1.5 m behind that."""
+    rules, ahead = rules_for(ROUND), state_at(3.0, 4.0, 0.0, 0.8, 0.0)
+    wall, unseen = boxed((5.0, 0.0, 5.2, 8.0)), boxed((3.5, 0.0, 8.0, 8.0))
+    scene = scene_of(wall)
+    hidden = scene.around.closed._replace(distance=field_of(unseen), occupied=unseen & False)
+    scene = scene._replace(around=scene.around._replace(closed=hidden))
+    _, rows, _ = rolled(scene, rules, ahead, Manoeuvre(0.8, 0.0, 9.0, FOLLOW))
+    assert 4.4 < rows["x"].max() <= 5.0 - 0.3 + CELL
 
 
 def pose_columns(rows):

@@ -207,12 +207,12 @@ def test_a_manoeuvre_passes_clear_if_no_obstacle_at_its_velocity_touches_for_so_
     rows["x"], rows["y"] = np.linspace(1.0, 4.0, len(rows)), 4.0
     latency, times = 0.1, STEP * SCHEDULE.step
     moving = predict(obstacles, PredictionConfig(), (latency, STEP, STEPS))
-    clear = True
+    clear, until = True, next((time for time in times if time >= wanted), math.inf)
     for time, row in zip(times, rows.view(np.recarray), strict=True):
         for x, y, vx, vy, radius in obstacles:
             at = x + (latency + time) * vx, y + (latency + time) * vy
             near = RULES.body.circumscribed + radius + 0.05  # the error of a tracked position
-            clear &= time > wanted or math.dist(at, (row.x, row.y)) >= near
+            clear &= time > until or math.dist(at, (row.x, row.y)) >= near
     assert t.passes_clear(moving, RULES, rows, wanted) == clear
 
 

@@ -59,10 +59,14 @@ def test_turning_there_and_back_changes_nothing_and_by_nothing_is_the_same_thing
 
 
 @pytest.mark.parametrize("yaw", [0.0, YAW])
-def test_moving_obstacles_that_cannot_be_are_left_out(yaw):
+def test_moving_obstacles_that_cannot_be_are_a_fault(yaw):
     one = MovingObstacle(1.0, 2.0, 0.5, -0.2, 0.3)
+    assert as_moving([one], yaw) == ([turned_disc(one, yaw)], None)
     odd = [one._replace(x=math.nan), one._replace(vy=math.inf), one._replace(radius=math.inf)]
-    assert as_moving([*odd, one, one._replace(radius=-0.1)], yaw) == ([turned_disc(one, yaw)], None)
+    for other in [*odd, one._replace(radius=-0.1)]:
+        found, wrong = as_moving([one, other], yaw)
+        assert found is None
+        assert wrong.startswith(f"a moving obstacle is {tuple(other)}: expected MovingObstacle(")
 
 
 def test_goals_with_headings_are_reached_round_what_the_map_does_not_show():

@@ -128,6 +128,18 @@ def test_another_map_revives_who_found_no_way_on_the_last():
     assert math.dist(drive.pose[:2], (6.5, 3.0)) < 0.3
 
 
+def test_another_map_revives_who_lost_its_data_after_it_found_no_way():
+    drive = Drive(WALLED)
+    drive.navigator.set_goal(Goal(6.5, 3.0))
+    drive.until("blocked", seconds=60.0)
+    drive.now += 1.0
+    drive.navigator.command(drive.state, [])
+    assert drive.status.state == "sensor_lost"
+    drive.navigator.set_map(room())
+    drive.lidar = LidarSimulator(drive.robot.lidar, room())
+    drive.until("arrived")
+
+
 def test_data_that_come_back_after_the_end_are_no_reason_to_drive():
     drive = Drive(room())
     drive.tick()
@@ -199,10 +211,17 @@ def test_movers_that_are_given_replace_those_tracked():
     assert not refused()  # the tracker sees nobody
 
 
-def test_a_mover_that_is_not_finite_is_left_out():
+@pytest.mark.parametrize(
+    "mover", [(math.nan, 3.0, 0.0, 0.0, 0.3), (4.0, 3.0, 0.0, 1e9, 0.3), (4.0, 3.0, 0.0, 0.0, -0.3)]
+)
+def test_a_mover_whose_numbers_cannot_be_brakes_and_says_so(mover):
     drive = under_way()
-    for _ in range(10):
-        drive.tick(movers=[MovingObstacle(math.nan, 3.0, 0.0, 0.0, 0.3)])
+    before = drive.twist.v
+    for _ in range(3):
+        drive.tick(movers=[MovingObstacle(*mover)])
+    assert drive.twist.v < before
+    assert "a moving obstacle is (" in drive.status.reason
+    drive.tick(movers=[])
     assert drive.status.state == "following"
 
 

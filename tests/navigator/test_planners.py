@@ -48,17 +48,17 @@ def least_distance(path, x, y):
 
 def test_what_was_seen_is_gone_round_until_it_is_forgotten():
     made = planners()
-    straight = made.plan(START, GOAL, explored=False).path
+    straight = made.plan(START, GOAL).path
     assert straight.length == pytest.approx(6.0, abs=0.01)
     assert show(made, SEEN_OCCUPIED, 3.8, 2.6, 4.2, 3.4)
     assert not show(made, SEEN_OCCUPIED, 3.8, 2.6, 4.2, 3.4)
     assert made.blocked_at(straight.points) == pytest.approx(2.8 - 0.25, abs=0.15)
-    around = made.plan(START, GOAL, explored=False).path
+    around = made.plan(START, GOAL).path
     assert around.length > 6.1
     assert made.blocked_at(around.points) is None
     assert least_distance(around, 4.0, 3.35) >= 0.25
     made.forget()
-    assert made.plan(START, GOAL, explored=False).path.length == pytest.approx(6.0, abs=0.01)
+    assert made.plan(START, GOAL).path.length == pytest.approx(6.0, abs=0.01)
 
 
 def test_room_to_spare_is_not_worth_a_detour():
@@ -66,7 +66,7 @@ def test_room_to_spare_is_not_worth_a_detour():
     values[:, 38:42] = 100
     values[28:33, 38:42] = 0  # 0.5 m wide on the straight way, and a wide gap higher up
     values[45:57, 38:42] = 0
-    plan = planners(room(values)).plan(START, GOAL, explored=False)
+    plan = planners(room(values)).plan(START, GOAL)
     assert plan.radius == 0.25
     assert plan.path.length < 6.1
 
@@ -76,15 +76,15 @@ def test_unknown_space_seen_free_is_planned_through_and_a_keepout_never():
     values[:, 35:45] = -1
     made = planners(room(values.copy()))
     with pytest.raises(NoPath):
-        made.plan(START, GOAL, explored=False)
+        made.plan(START, GOAL)
     assert show(made, SEEN_FREE, 3.0, 0.3, 5.0, 5.7)
-    assert made.plan(START, GOAL, explored=False).path.length == pytest.approx(6.0, abs=0.01)
+    assert made.plan(START, GOAL).path.length == pytest.approx(6.0, abs=0.01)
     keepout = np.zeros((60, 80), bool)
     keepout[:, 38:42] = True
     barred = planners(room(values, keepout=keepout))
     show(barred, SEEN_FREE, 3.0, 0.3, 5.0, 5.7)
     with pytest.raises(NoPath):
-        barred.plan(START, GOAL, explored=False)
+        barred.plan(START, GOAL)
 
 
 def test_the_planners_know_after_many_sights_what_fresh_ones_would():
@@ -106,25 +106,25 @@ def test_there_is_room_to_spare_where_there_is_room():
     values[:28, 38:42] = 100
     values[32:, 38:42] = 100  # a door of 0.4 m
     with pytest.raises(NoPath):
-        planners(room(values)).plan(START, GOAL, explored=False)
+        planners(room(values)).plan(START, GOAL)
     values = np.zeros((60, 80), np.int8)
     values[:27, 38:42] = 100
     values[33:, 38:42] = 100  # a door of 0.6 m: only just
-    assert planners(room(values)).plan(START, GOAL, explored=False).radius == 0.25
-    assert planners().plan(START, GOAL, explored=False).radius == pytest.approx(0.5)
+    assert planners(room(values)).plan(START, GOAL).radius == 0.25
+    assert planners().plan(START, GOAL).radius == pytest.approx(0.5)
 
 
 def test_a_goal_that_is_seen_occupied_is_waited_for_near_by():
     made = planners()
     show(made, SEEN_OCCUPIED, 6.8, 2.8, 7.2, 3.2)
-    plan = made.plan(START, GOAL, explored=False)
+    plan = made.plan(START, GOAL)
     end = tuple(plan.path.points[-1])
     assert 0.4 < math.dist(end, GOAL) < 1.0
     assert made.blocked_at(plan.path.points) is None
     with pytest.raises(GoalObstructed, match="an obstacle occupies the goal"):
-        made.plan(end, GOAL, explored=False)
+        made.plan(end, GOAL)
     show(made, SEEN_FREE, 6.8, 2.8, 7.2, 3.2)
-    assert tuple(made.plan(end, GOAL, explored=False).path.points[-1]) == GOAL
+    assert tuple(made.plan(end, GOAL).path.points[-1]) == GOAL
 
 
 def test_a_goal_that_sensed_obstacles_enclose_is_waited_for_near_by():
@@ -132,13 +132,13 @@ def test_a_goal_that_sensed_obstacles_enclose_is_waited_for_near_by():
     made = planners()
     for box in (6.0, 2.0, 6.2, 4.0), (6.0, 2.0, 8.0, 2.2), (6.0, 3.8, 8.0, 4.0):
         show(made, SEEN_OCCUPIED, *box)
-    end = made.plan(START, GOAL, explored=False).path.points[-1]
+    end = made.plan(START, GOAL).path.points[-1]
     assert end[0] < 6.0 or abs(end[1] - 3.0) > 1.0
     assert math.dist(end, GOAL) < 1.7
     made = planners()
     show(made, SEEN_OCCUPIED, 3.8, 0.0, 4.2, 6.0)
     with pytest.raises(NoPath):
-        made.plan(START, GOAL, explored=False)
+        made.plan(START, GOAL)
 
 
 @pytest.mark.parametrize("goal", [(7.95, 3.0), (7.8, 3.0)])
@@ -146,7 +146,7 @@ def test_a_goal_that_the_map_rules_out_is_not_waited_for(goal):
     made = Planners(PlanningMap(room(), 0.1), CONFIG._replace(goal_tolerance=0.05), (0.3, 0.25))
     show(made, SEEN_OCCUPIED, 3.8, 2.6, 4.2, 3.4)
     with pytest.raises(GoalOccupied):
-        made.plan(START, goal, explored=False)
+        made.plan(START, goal)
 
 
 @pytest.mark.parametrize(("gap", "radius"), [(0.7, 0.5), (0.35, 0.3), (0.12, 0.25)])
@@ -175,4 +175,4 @@ def test_a_bent_way_out_is_judged_along_its_bend():
         made._ask = lambda width, *_, lead=bent(corner): (
             tight if width is made.by_width[-1] else lead
         )
-        assert (made.plan(START, GOAL, explored=False) is not tight) == kept
+        assert (made.plan(START, GOAL) is not tight) == kept

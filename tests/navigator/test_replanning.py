@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from driving import REST, ROUND, Drive, room
+from driving import REST, ROUND, Drive, room, under_way
 from dynastar.dwa.scene import AT_REST
 from dynastar.errors import InputError, NoPath
 from dynastar.footprint import Footprint
@@ -19,6 +19,7 @@ from dynastar.navigator import Navigator
 from dynastar.path import Path
 from dynastar.planning import GridPlanner, PlannerConfig
 from dynastar.robot import ROBOTS
+from dynastar.simulation.lidar import LidarSimulator
 
 SQUARE = np.array([(1.5, 1.5), (6.5, 1.5), (6.5, 4.5), (1.5, 4.5), (1.5, 2.0)])
 
@@ -289,3 +290,27 @@ def test_a_planner_that_fails_stops_the_robot_and_raises_nothing(answer, words, 
     assert isinstance(drive.status.error, NoPath)
     assert drive.status.error.args[0]
     assert re.search(words, str(drive.status.error))
+
+
+def test_another_map_keeps_the_path_that_was_given():
+    path = [(1.5, 1.5), (3.0, 4.5), (6.5, 1.5)]
+    drive = Drive(room(), pose=(1.5, 1.5, 0.0), true=room(8.0, 6.0, (4.0, 0.0, 4.3, 6.0)))
+    drive.navigator.follow(path)
+    drive.until("blocked", seconds=120.0)
+    drive.lidar = LidarSimulator(drive.robot.lidar, room())
+    drive.navigator.set_map(room())
+    drive.tick()
+    assert drive.navigator.route.given is not None
+    drive.until("arrived", seconds=240.0)
+
+
+def test_a_change_of_the_map_is_looked_at_though_it_came_right_after_a_plan():
+    drive = under_way()
+    route, seen = drive.navigator.route, []
+    route._is_blocked = lambda: seen.append(drive.now) or False
+    goal = Goal(6.5, 3.0)
+    route._planned_at = drive.now
+    for changed, later in ((True, 0.2), (False, 0.6), (False, 1.1), (False, 1.2)):
+        state = drive.state._replace(stamp=drive.now + later)
+        route.update(state, goal, changed, True)
+    assert len(seen) == 1

@@ -45,6 +45,16 @@ def test_time_that_goes_back_brakes_and_goes_on_when_time_does():
     assert drive.status.state == "following"
 
 
+def test_a_clock_that_was_set_back_is_taken_after_a_while():
+    drive = under_way()
+    drive.now -= 500.0
+    said = [drive.tick() and drive.status.state for _ in range(30)]
+    assert said[0] == "sensor_lost"
+    assert said[-1] == "following"
+    drive.until("arrived")
+    assert math.dist(drive.pose[:2], (6.5, 3.0)) < 0.3
+
+
 def test_a_jump_of_the_pose_is_survived():
     drive = under_way()
     drive.pose = drive.pose._replace(y=drive.pose.y + 1.0)
@@ -66,7 +76,7 @@ def test_without_any_scan_nothing_moves():
 def test_a_stale_scan_is_no_scan():
     drive = under_way()
     old = drive.scan()
-    for _ in range(30):
+    for _ in range(18):
         drive.tick(old)
     assert drive.twist == REST
     assert drive.status.state == "sensor_lost"

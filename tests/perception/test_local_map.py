@@ -218,7 +218,21 @@ def test_a_lattice_is_the_same_if_its_cells_are(resolution, corner, same):
     assert LocalMap().lies_on(resolution, corner) == same
 
 
-@pytest.mark.parametrize(("resolution", "corner"), [(0.05, (0.02, -3.01)), (0.03, (1.0, 7.7))])
+def overlaps_hit(local, centre, resolution):
+    """Whether the box of a hit reaches into a cell of another lattice."""
+    a, half = local.resolution, 0.5 * resolution
+    for row, column in np.argwhere(local.states == SEEN_OCCUPIED):
+        box = local.boxes[row, column]
+        x, y = np.array(local.origin) + (np.array([column, row]) + 0.5) * a - centre
+        across = x + box["low_x"] < half and x + box["high_x"] >= -half
+        if across and y + box["low_y"] < half and y + box["high_y"] >= -half:
+            return True
+    return False
+
+
+@pytest.mark.parametrize(
+    ("resolution", "corner"), [(0.05, (0.02, -3.01)), (0.03, (1.0, 7.7)), (0.08, (0.01, 0.02))]
+)
 def test_a_window_on_another_lattice_shows_what_the_old_one_showed(resolution, corner):
     ranges = np.random.default_rng(3).uniform(1.0, 4.0, 12).repeat(N // 12)
     before = map_after(scan(ranges), pose=Pose2D(20.0, 10.0, 0.0))
@@ -228,7 +242,10 @@ def test_a_window_on_another_lattice_shows_what_the_old_one_showed(resolution, c
     for x, y in np.random.default_rng(4).uniform((16.0, 6.0), (24.0, 14.0), (200, 2)):
         row, column = index(after, x, y)
         centre = np.array(after.origin) + (np.array([column, row]) + 0.5) * resolution
-        assert after.states[row, column] == before.states[index(before, *centre)]
+        hit, state = overlaps_hit(before, centre, resolution), after.states[row, column]
+        assert (state == SEEN_OCCUPIED) == hit
+        if not hit and before.states[index(before, *centre)] != SEEN_OCCUPIED:
+            assert state == before.states[index(before, *centre)]
     assert (after.states == SEEN_OCCUPIED).sum() > 100
 
 
@@ -265,3 +282,27 @@ def test_what_lies_between_two_beams_is_free_as_far_as_their_gap(
     found = free_at.ravel() == 7.0
     assert (found == free)[(past > 1e-6) & ~at_end].all()
     assert (past > 1e-6).mean() > 0.8
+
+
+def test_a_cell_that_was_forgotten_is_not_free_because_the_robot_comes_back():
+    """Behind a lidar that looks ahead: a cell stays free while the robot stands by it, not afterwards."""
+    local, disc = map_after(scan(3.0), pose=Pose2D(20.0, 10.0, 0.0)), (20.0, 10.0, 0.5)
+    memory = local.config.memory
+    for now in (10.0, 10.0 + 0.9 * memory):
+        local.keep_free(disc, now)
+        local.update(now, nothing(local))
+        assert local.states[index(local, 20.3, 10.0)] == SEEN_FREE
+    late = 10.0 + 2.0 * memory
+    local.keep_free(disc, late)
+    local.update(late, nothing(local))
+    assert local.states[index(local, 20.3, 10.0)] == UNSEEN
+
+
+def test_a_scan_that_comes_late_makes_nothing_older():
+    local = map_after(scan(3.0), pose=Pose2D(20.0, 10.0, 0.0))
+    stamps = local.free_at.copy(), local.hit_at.copy()
+    local.see(
+        placed(scan(3.0, stamp=0.5), Pose2D(20.0, 10.0, 0.0), (0.0, 0.0), 0.1), np.zeros(N, bool)
+    )
+    assert (local.free_at >= stamps[0]).all()
+    assert (local.hit_at >= stamps[1]).all()

@@ -13,9 +13,9 @@ from dynastar.scan import LaserScan
 HERE = Pose2D(0.0, 0.0, 0.0)
 
 
-def scan(stamp, ranges, angle_min=-math.pi, angle=math.tau, pose=HERE):
+def scan(stamp, ranges, angle_min=-math.pi, angle=math.tau, pose=HERE, mount=HERE):
     step = angle / len(ranges)
-    taken = LaserScan(stamp, np.array(ranges, float), angle_min, step, 0.05, 10.0)
+    taken = LaserScan(stamp, np.array(ranges, float), angle_min, step, 0.05, 10.0, mount)
     return placed(taken, pose, (0.0, 0.0), 0.1)
 
 
@@ -84,3 +84,16 @@ def test_scans_of_two_lidars_with_different_beams_are_kept_together():
     assert is_free(-3.0, 0.0, past.space(), -1.0)
     assert not is_free(-3.0, 0.0, past.space(), 0.1)
     assert is_free(-1.9, 0.0, past.space(), 0.1)
+
+
+def test_each_of_two_lidars_keeps_its_own_scans_though_their_stamps_are_the_same():
+    past, behind = PastScans(), Pose2D(0.0, 0.0, math.pi)
+    for k in range(200):
+        past.add(scan(0.05 * k, [4.0] * 360, -1.0, 2.0))
+        past.add(scan(0.05 * k, [4.0] * 360, -1.0, 2.0, behind, behind))
+    newest = 0.05 * 199
+    assert is_free(3.0, 0.0, past.space(), newest - 1e-9)
+    assert is_free(-3.0, 0.0, past.space(), newest - 1e-9)
+    stamps = past.space().sensors["stamp"]
+    assert (np.diff(stamps) <= 0.0).all()
+    assert len(stamps) < 60

@@ -85,11 +85,10 @@ class Driver:
     def __init__(
         self, env: Any, thing: Any, grid: OccupancyGrid | None = None, settings: Settings = None
     ) -> None:
-        robot = robot_of(thing)
         own = {"period": env.step_time, "goal_tolerance": thing.info.goal_threshold}
         own["range_error"] = DEVIATIONS * thing.lidar.std if thing.lidar.noise else 0.01
         config = configured("default", {**own, **(settings or {})})
-        self.navigator = Navigator(grid or map_of(env), robot, config)
+        self.navigator = Navigator(grid or map_of(env), robot_of(thing), config)
         self._env, self._thing = env, thing
         self._goal: tuple[float, ...] | None = None
 

@@ -50,9 +50,8 @@ def scan_of(state: SensingState, stamp: float) -> LaserScan:
 
 def lidar_of(scan: LaserScan) -> Lidar:
     """The Lidar that such a scan comes from."""
-    beams = len(scan.ranges)
-    fov = math.tau if scan.full_circle else scan.angle_increment * (beams - 1)
-    return Lidar(beams, fov, 0.0, scan.range_max, theta=scan.angle_min + 0.5 * fov)
+    fov = math.tau if scan.full_circle else scan.angle_increment * (len(scan.ranges) - 1)
+    return Lidar(len(scan.ranges), fov, 0.0, scan.range_max, theta=scan.angle_min + 0.5 * fov)
 
 
 def twist_of(behavior: Behavior) -> Twist:
@@ -87,9 +86,8 @@ class DynastarBehavior(Behavior, name="Dynastar"):  # type: ignore[call-arg, mis
             self._shift = self._shift + self._last - here  # a lattice has moved the agent
         self._last = here
         (x, y), scan = (here + self._shift).tolist(), scan_of(self._state, self._time)
-        pose = Pose2D(x, y, self.pose.orientation)
-        navigator = self._aim(pose, scan, time_step)
-        command = navigator.command(RobotState(self._time, pose, twist_of(self)), scan)
+        state = RobotState(self._time, Pose2D(x, y, self.pose.orientation), twist_of(self))
+        command = self._aim(state.pose, scan, time_step).command(state, scan)
         self._time += time_step
         return Twist2((command.v, 0.0), command.omega, frame=Frame.relative)
 

@@ -94,7 +94,7 @@ def tables(rows: Sequence[Row]) -> list[Table]:
 
 
 def _left_out(rows: Sequence[Row]) -> str:
-    """For each density how many worlds the suite's rule left out, of how many, in words."""
+    """How many worlds of each density have no way for the robot, and so were left out, in words."""
     numbers: dict[float, set[int]] = {}
     for row in rows:
         numbers.setdefault(row["occupied"], set()).add(row["number"])

@@ -60,7 +60,7 @@ class Follower:
     def _plan(self, state: RobotState) -> bool:
         goal = self._goals[0]
         try:
-            plan = self.planners.plan(state.pose[:2], (goal.x, goal.y), explored=False)
+            plan = self.planners.plan(state.pose[:2], (goal.x, goal.y))
         except PlanningError as error:
             self._goals = []
             self._say("blocked", str(error))

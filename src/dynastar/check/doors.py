@@ -87,7 +87,7 @@ def doors(found: Sequence[Passage], ways: Ways) -> Finding:
 
 
 def _which(some: Sequence[Passage], found: Sequence[Passage]) -> str:
-    """How many of the passages ``found`` are meant by ``some``, in words."""
+    """``some`` of the passages ``found`` on the map, in words."""
     if len(found) == 1:
         return "the map's only passage"
     if len(some) == len(found):

@@ -101,6 +101,7 @@ def rests_in_time(around, rules, state, command):
         return ADMISSIBLE  # it stays at rest
     duration = rules.period + stop
     checks = max(2, int(math.ceil(duration / CHECK_PERIOD)))
+    code = ADMISSIBLE
     for k in range(1, checks + 1):
         t = duration * k / checks
         if t <= rules.period:
@@ -116,9 +117,9 @@ def rests_in_time(around, rules, state, command):
                 at_start = hidden_gap(hidden, body, start, need)
                 if at_start > need or gap < at_start - NEARER:
                     return HIDDEN
-        if reaches(around.moving, body, start, pose, around.latency + t):
-            return MOVING
-    return ADMISSIBLE
+        if code == ADMISSIBLE and reaches(around.moving, body, start, pose, around.latency + t):
+            code = MOVING  # a later check may yet find HIDDEN, which nothing makes good
+    return code
 
 
 @inner

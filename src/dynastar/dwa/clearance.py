@@ -11,7 +11,6 @@ from dynastar.dwa.motion import Pose
 from dynastar.field import Field, bilinear, is_inside
 
 HALF_DIAGONAL = 1.0 / math.sqrt(2.0)  # of a cell
-BEHIND = 3.5  # cells, besides the margin, behind which a closed cell is deep inside
 ROUNDING = 1e-6  # m of clearance that rounding may take
 EXACT_WITHIN = 0.3  # m between obstacle and footprint, beyond which its circle stands for it
 
@@ -20,14 +19,12 @@ class Closed(NamedTuple):
     """Cells that were not observed free: the ``distance`` to the nearest, and the hits in them.
 
     ``hits`` (rows, columns) are the boxes of the hits in the cells that are ``occupied``, metres from
-    a cell's centre. In the others an obstacle may be up to half a diagonal from the centre. ``depth`` is
-    the distance (m) of a closed cell to the nearest that is not, or less.
+    a cell's centre. In the others an obstacle may be up to half a diagonal from the centre.
     """
 
     distance: Field
     occupied: npt.NDArray[np.bool_]
     hits: npt.NDArray[Any]
-    depth: npt.NDArray[np.float32]
 
 
 class Box(NamedTuple):
@@ -112,7 +109,7 @@ def box_distance(box, x, y):
 
 @inner
 def closed_box(closed, row, column):
-    """The box in the map frame of what may stand in a closed cell: its hits, or all of the cell."""
+    """Box in the map frame of the obstacles that a closed cell may hold: its hits, or all of the cell."""
     a = closed.distance.resolution
     x, y = closed.distance.x0 + (column + 0.5) * a, closed.distance.y0 + (row + 0.5) * a
     if closed.occupied[row, column]:
@@ -126,7 +123,7 @@ def closed_box(closed, row, column):
 def body_box_distance(body, pose, box):
     """Distance (m) from the footprint at ``pose`` to a box that is smaller than it.
 
-    It is 0 or negative where they overlap, and falls the deeper the one reaches into the other.
+    It is 0 where they touch, and negative by about the depth to which they overlap.
     """
     n = len(body.vertices)
     if n == 0:
@@ -146,20 +143,25 @@ def body_box_distance(body, pose, box):
 
 
 @inner
-def slack_to(closed, all_of_it, body, margin, start, pose, enough):
-    """Slack (m) of the constraint of ``clearance_slack``, of all closed cells or those not deep inside.
+def clearance_slack(closed, body, margin, start, pose, enough=0.0):
+    """Slack (m) of the clearance constraint at ``pose``, negative if violated.
 
-    A box deep inside is farther away, by the margin, than that of some closed cell before it.
-    Returns the slack, up to ``enough``, and whether the footprint reaches into one of the boxes.
+    The constraint: the footprint keeps ``margin`` from the box of every closed cell, or its distance
+    at ``start`` if that was smaller; where they overlapped, it reaches no deeper. A cell does not count
+    in which the robot stood at ``start``: overlapped by more than the margin, or without a hit. The
+    slack is exact only up to ``enough`` (m), a cell at least.
     """
     field, a = closed.distance, closed.distance.resolution  # no box reaches further from its centre
+    least = max(enough, a)
+    distance = distance_at(field, pose.x, pose.y)
+    if distance - body.circumscribed - a - margin >= least:
+        return distance - body.circumscribed - a - margin
     rows, columns = field.values.shape
-    reach, deep = body.circumscribed + margin + enough + a, margin + BEHIND * a
+    reach = body.circumscribed + margin + least + a
     first = max(0, int((pose.y - reach - field.y0) / a))
     last = min(rows - 1, int((pose.y + reach - field.y0) / a))
     low = max(0, int((pose.x - reach - field.x0) / a))
     high = min(columns - 1, int((pose.x + reach - field.x0) / a))
-    least, inside = enough, False
     for row in range(first, last + 1):
         y, column = field.y0 + (row + 0.5) * a, low
         while column <= high:
@@ -169,8 +171,6 @@ def slack_to(closed, all_of_it, body, margin, start, pose, enough):
                 continue
             at = column
             column += 1
-            if closed.depth[row, at] > deep and not all_of_it:
-                continue
             x = field.x0 + (at + 0.5) * a
             far = body.circumscribed + a + margin + least
             if (x - pose.x) ** 2 + (y - pose.y) ** 2 >= far * far:
@@ -181,34 +181,12 @@ def slack_to(closed, all_of_it, body, margin, start, pose, enough):
             near = body_box_distance(body, pose, box)
             if near - margin >= least:
                 continue
-            inside |= near <= 0.0
             before = body_box_distance(body, start, box)
             if before < (-margin if closed.occupied[row, at] else 0.0):
                 continue  # the robot stands there
             least = min(least, near - min(margin, before))
             if least < -ROUNDING:
-                return least, inside
-    return least, inside
-
-
-@inner
-def clearance_slack(closed, body, margin, start, pose, enough=0.0):
-    """Slack (m) of the clearance constraint at ``pose``, negative if violated.
-
-    The constraint: the footprint keeps ``margin`` from the box of every closed cell, or its distance
-    at ``start`` if that was smaller; where they overlapped, it reaches no deeper. A cell does not count
-    in which the robot stood at ``start``: overlapped by more than the margin, or without a hit. The
-    slack is exact only up to ``enough`` (m), a cell at least. Cells deep inside count only where the
-    footprint reaches into closed space.
-    """
-    field, a = closed.distance, closed.distance.resolution
-    enough = max(enough, a)
-    distance = distance_at(field, pose.x, pose.y)
-    if distance - body.circumscribed - a - margin >= enough:
-        return distance - body.circumscribed - a - margin
-    least, inside = slack_to(closed, False, body, margin, start, pose, enough)
-    if least >= -ROUNDING and (inside or distance <= 0.0):
-        least, inside = slack_to(closed, True, body, margin, start, pose, enough)
+                return least
     return least
 
 

@@ -140,7 +140,7 @@ def roll_out(scene, rules, start, manoeuvre, rows):
 def touches(scene, rules, start, pose):
     """Whether a footprint at ``pose`` is nearer to an obstacle than a certified stop may come."""
     closed, margin = scene.around.closed, scene.around.margin_to_closed
-    obstacles = Closed(scene.distance_to_obstacle, closed.occupied, closed.hits, closed.depth)
+    obstacles = Closed(scene.distance_to_obstacle, closed.occupied, closed.hits)
     at_start = start.state.pose
     return clearance_slack(obstacles, rules.body, margin, at_start, pose) < -ROUNDING
 

@@ -64,10 +64,10 @@ def sigma(scene, rules):
 def progress(cost_to_go, rules, start, rows):
     """Heading term: mean decrease of the cost-to-go at eight times, over what is possible at most.
 
-    The mean costs what is put off. It is at least -1, so that being driven off near the goal is no
-    worse than anywhere else. It has no upper bound: near obstacles the cost-to-go falls by more than a
-    metre a metre, and bounded, all manoeuvres would score alike there. Beyond the local map the
-    cost-to-go goes on falling as it fell last.
+    A mean penalises progress that is postponed. It is at least -1, so that being driven off near the
+    goal is no worse than anywhere else. It has no upper bound: near obstacles the cost-to-go falls by
+    more than a metre a metre, and bounded, all manoeuvres would score alike there. Beyond the local map
+    the cost-to-go goes on falling as it fell last.
     """
     gained, here, fell = 0.0, start.cost_to_go, 0.0
     for i in rules.schedule.looks:
@@ -128,11 +128,12 @@ def risk(moving, rules, rows):
 
 @inner
 def passes_clear(moving, rules, rows, duration):
-    """Whether no moving obstacle that keeps its velocity may touch the robot for so long (s)."""
+    """Whether no moving obstacle that keeps its velocity may touch the robot for so long (s), or longer.
+
+    That is until the first row at or after ``duration``.
+    """
     for i in range(len(rows)):
         k = rules.schedule.step[i]
-        if k * rules.schedule.period > duration:
-            break
         travel = moving.travel[0, k - 1]
         for obstacle in moving.obstacles:
             dx = obstacle.x + travel * obstacle.vx - rows[i].x
@@ -140,6 +141,8 @@ def passes_clear(moving, rules, rows, duration):
             near = rules.body.circumscribed + obstacle.radius + TRACKING_ERROR
             if dx * dx + dy * dy < near * near:
                 return False
+        if k * rules.schedule.period >= duration:
+            break
     return True
 
 

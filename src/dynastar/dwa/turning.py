@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-
 from dynastar.compiled import inner, njit
 from dynastar.dwa.admissible import keeps_clear
 from dynastar.dwa.clearance import Closed
@@ -23,8 +21,7 @@ def has_room_to_turn(scene, rules, start, pose, angle, need):
     spare, short_by = need
     angle = math.copysign(max(abs(angle) - short_by, 0.0), angle)
     known, closed = scene.distance_to_obstacle, scene.around.closed
-    not_deep = np.zeros(known.values.shape, np.float32)
-    occupied = Closed(known, closed.occupied, closed.hits, not_deep)
+    occupied = Closed(known, closed.occupied, closed.hits)
     margin = scene.around.margin_to_closed + spare
     return keeps_clear(occupied, rules.body, margin, start, pose, (0.0, angle))
 

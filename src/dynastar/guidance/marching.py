@@ -17,7 +17,7 @@ WALL_COST = 40.0  # of a metre through what cannot be driven: values there only 
 
 
 def queue_for(cells):
-    """Room for the queue of ``march``: buckets, and entries with what comes behind each."""
+    """Room for the queue of ``march``: buckets, and entries with the index of the next one."""
     return np.empty(BUCKETS, np.int64), np.empty(4 * cells, np.int64), np.empty(4 * cells, np.int64)
 
 

@@ -26,16 +26,20 @@ def as_moving(
 ) -> tuple[list[MovingObstacle] | None, str | None]:
     """Moving obstacles as floats, turned about the origin by an angle (rad), and a fault or None.
 
-    Those with a number that is not finite, or absurd, are left out.
+    One with a number that is not finite, or absurd, is a fault.
     """
     if movers is None:
         return None, None
+    expected = "expected MovingObstacle(x, y, vx, vy, radius), all numbers"
     try:
         given = [MovingObstacle(*map(float, mover)) for mover in movers]
     except (TypeError, ValueError, OverflowError):
-        words = "expected MovingObstacle(x, y, vx, vy, radius), all numbers"
-        return None, f"the moving obstacles are {shown(movers)}: {words}"
-    return [turned_disc(one, angle) for one in given if _is_usable(one)], None
+        return None, f"the moving obstacles are {shown(movers)}: {expected}"
+    for one in given:
+        if not _is_usable(one):
+            most = f"none beyond {tuple(map(int, LARGEST))}, the radius not negative"
+            return None, f"a moving obstacle is {tuple(one)}: {expected}, {most}"
+    return [turned_disc(one, angle) for one in given], None
 
 
 def _is_usable(one: MovingObstacle) -> bool:

@@ -119,9 +119,9 @@ class Commands:
 
         A command may act at once, or at the declared latency at the latest, one after the other; the
         times in between are LATENCY_STEP apart. Until then the robot follows the commands under way as
-        expected, or the oldest or the newest of them alone, faster by the drive's error. The next command
-        may come the latest. The
-        twist is the greater of the measured one and ``twist``, that from which the command goes on.
+        expected, or the oldest or the newest of them alone, faster by the drive's error. The command after
+        this one may act at the declared latency. The twist is the greater of the measured one and
+        ``twist``, that from which the command goes on.
         """
         steps, found = math.ceil(self.latency / LATENCY_STEP - 1e-9), []
         fast = state._replace(twist=self._fast(state.twist))
@@ -140,7 +140,7 @@ class Commands:
         return Twist(self._faster * twist.v, self._faster * twist.omega)
 
     def send(self, state: RobotState, command: Twist | None) -> Twist:
-        """Notes a command that has a certified stop; None carries the last one's stop on."""
+        """Record a command that has a certified stop; None continues the last one's stop."""
         if command is None:
             return self.brake(state)
         self._stop = StopProfile(command, self.limits)
@@ -148,12 +148,12 @@ class Commands:
         return command
 
     def forget_times(self) -> None:
-        """Drops the stamps of commands: the clock is another. The stop is still carried on."""
+        """Drop the stamps of commands, since the clock is another one. The stop is still continued."""
         self._sent = []
         self.check = DriveCheck(self.limits, self._declared, self.latency)
 
     def brake(self, state: RobotState) -> Twist:
-        """Carries the last certified stop on, from no more than was commanded last.
+        """Continue the last certified stop, from no more than was commanded last.
 
         So it ends though the state is frozen or not finite, or the odometry reads high.
         """

@@ -43,7 +43,7 @@ class NavigatorConfig(NamedTuple):
     ] = 0.0
     reverse: Annotated[bool, Field("reverse where needed and possible")] = True
     scan_age: Annotated[
-        float, Field("largest age of a scan or state before the robot brakes", "s", 0.05, 5.0)
+        float, Field("largest age of a scan or state before the robot brakes", "s", 0.05, 2.0)
     ] = 0.3
     unknown: UnknownSpace = "blocked"
     goal_tolerance: GoalTolerance = 0.25
@@ -108,21 +108,28 @@ def configured(
 
     Raises ConfigError for an unknown preset or setting, or a value out of range.
     """
-    return changed(choose(preset, PRESETS, "preset"), overrides or {})
+    config: NavigatorConfig = changed(choose(preset, PRESETS, "preset"), overrides or {})
+    return config
 
 
-def changed(config: NavigatorConfig, overrides: Mapping[str, Any]) -> NavigatorConfig:
+def changed(config: Any, overrides: Mapping[str, Any], where: str = "") -> Any:
     """Returns ``config`` with some settings replaced, nested tables by field name.
 
     Raises ConfigError for an unknown setting, or a value out of range.
     """
-    return _merged(config, overrides, "")
-
-
-def _merged(base: Any, overrides: Mapping[str, Any], where: str) -> Any:
-    values = dict(base._asdict())
+    values = dict(config._asdict())
     for key, value in overrides.items():
         current = values.get(key)
         nested = hasattr(current, "_asdict") and isinstance(value, Mapping)
-        values[key] = _merged(current, value, f"{where}{key}.") if nested else value
-    return checked(type(base), values, where.rstrip("."))
+        values[key] = changed(current, value, f"{where}{key}.") if nested else value
+    return checked(type(config), values, where.rstrip("."))
+
+
+def changes(before: Any, after: Any) -> dict[str, Any]:
+    """The settings of ``after`` that differ, as ``changed`` takes them."""
+    found: dict[str, Any] = {}
+    for key, value in after._asdict().items():
+        old = getattr(before, key)
+        if value != old:
+            found[key] = changes(old, value) if hasattr(value, "_asdict") else value
+    return found

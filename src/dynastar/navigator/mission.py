@@ -74,6 +74,11 @@ class Mission:
         self.recoveries += 1
         self.say("recovering", detail)
 
+    @property
+    def is_blocked(self) -> bool:
+        """Whether the mission is over without its goal, also while data are lost."""
+        return "blocked" in (self.state, self._before and self._before[0])
+
     def lose(self, fault: str) -> None:
         """Enter "sensor_lost" because of a ``fault``, until ``regain``."""
         if self._before is None:

@@ -124,8 +124,8 @@ class Navigator:
         What was seen round the robot is kept, unless the map has another yaw.
         """
         self._use(grid, self.config)
-        if self.mission.state == "blocked":
-            self._set_out(self.mission.goals, "a new map")
+        if self.mission.is_blocked:
+            self._set_out(self.mission.goals, "a new map", self.route.given)
 
     def _use(self, grid: OccupancyGrid, config: NavigatorConfig) -> None:
         """Plan and drive on the cells of a map, none larger than ``config`` says."""
@@ -193,6 +193,15 @@ class Navigator:
         self._last_turn.reset()
         self.driving.forget_manoeuvre()
 
+    def _begin_clock_anew(self) -> None:
+        """Drop all that has stamps of another clock; goals and path stay."""
+        self.sensing = Sensing(self.robot, self.config, self.planning_map)
+        self._commands.forget_times()
+        self.retune(self.config.dwa)
+        self.route.set_map(self.planners)
+        self.progress.reset()
+        self._last_turn.reset()
+
     # -- the tick ---------------------------------------------------------------------------------
 
     def command(
@@ -206,6 +215,8 @@ class Navigator:
         mission = self.mission
         last_resort = self.config.unseen_speed > 0.0 and self.progress.rounds > 1
         state, movers, fault = self.sensing.perceive(state, scan, movers, last_resort)
+        if self.sensing.poses.clock_is_another:
+            self._begin_clock_anew()
         if fault is not None:
             mission.lose(fault)
             return self._commands.brake(state)
@@ -239,7 +250,7 @@ class Navigator:
         event = self.route.update(state, self.mission.goals[0], changed, reachable, someone)
         if event.is_new:
             self.mission.error = None
-            self.progress.restart(state.stamp)
+            self.progress.measure_anew()
         if event.recovery:
             self.mission.recover(state.stamp, event.recovery)
             self._refine()
@@ -281,6 +292,7 @@ class Navigator:
         mission, path = self.mission, self.route.path
         mission.say_driving(choice, moving, "" if path is not None else self.route.waits_because)
         if path is None:
+            self.progress.restart(state.stamp)
             return
         assert self.driving.guide is not None
         here = (state.pose.x, state.pose.y)

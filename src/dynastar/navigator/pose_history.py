@@ -10,7 +10,7 @@ from dynastar.navigator.status import RobotState, is_finite
 from dynastar.robot import Limits
 
 FARTHEST = 1e6  # m from the map's origin, where positions still tell cells apart
-KEPT_FOR = 2.0  # s
+KEPT_FOR = 2.0  # s, no less than any scan_age
 OTHER_CLOCK = 1.0  # s of rising stamps after time went back, from which on that is a clock anew
 FASTER = 1.2  # times the highest speed, up to which a pose has not jumped
 JUMP = 0.05  # m

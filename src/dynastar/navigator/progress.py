@@ -1,4 +1,4 @@
-"""Whether the robot gets on: it has to come to where the cost-to-go is lower."""
+"""Whether the robot makes progress: it has to come to where the cost-to-go is lower."""
 
 import math
 from collections.abc import Callable
@@ -11,7 +11,7 @@ CostToGoAt = Callable[[float, float], float]
 
 
 class Progress:
-    """Remembers where the robot last got on, when that was, and the rounds of recovery since.
+    """Remembers where the robot last made progress, when that was, and the rounds of recovery since.
 
     Places are compared by the cost-to-go of the moment, because it rises and falls everywhere with
     a new path or a moving obstacle.
@@ -28,12 +28,19 @@ class Progress:
         self.restart(-math.inf)
 
     def restart(self, now: float) -> None:
-        """Counts from ``now`` on (s), wherever the robot is."""
+        """Measure from ``now`` on (s), wherever the robot is."""
         self._anchor: Point | None = None
         self._since = now
 
+    def measure_anew(self) -> None:
+        """Another path: progress is measured from where the robot is, and the time since goes on.
+
+        So a robot whose paths replace each other is stuck as well.
+        """
+        self._anchor = None
+
     def stuck(self, now: float, here: Point, cost_to_go: CostToGoAt) -> bool:
-        """Whether the robot, ``here`` (m) at ``now`` (s), has not got on for longer than its patience."""
+        """Whether the robot, ``here`` (m) at ``now`` (s), made no progress for longer than its patience."""
         value = cost_to_go(*here)
         if self._stuck_at is not None and cost_to_go(*self._stuck_at) - value > LEAP:
             self._stuck_at, self.rounds = None, 0

@@ -57,12 +57,13 @@ class Route:
         self._is_short = False  # the path does not lead to the goal, only nearer or out of a zone
         self._someone = False  # a moving obstacle is at the goal
         self._planned_at = self._obstructed_at = -math.inf
+        self._changed = False  # the planning map, since the path was last looked at
         self.start_over()
 
     def start_over(self, given: Path | None = None) -> None:
         """Another goal, or a path that is ``given`` and only followed."""
         self.path: Path | None = None
-        self.s, self._given = 0.0, given
+        self.s, self.given = 0.0, given
         self._planned = False  # for this goal
         self._unsure = False  # an exact search may find a shorter path
         self._no_path_since: float | None = None
@@ -70,8 +71,9 @@ class Route:
         self._waited = 0.0  # s, for an obstacle at the goal
 
     def set_map(self, planners: Planners) -> None:
-        """Another map: the next tick plans anew."""
+        """Another map, or another clock: the next tick plans anew."""
         self.planners, self.path, self._no_path_since = planners, None, None
+        self._planned_at = self._obstructed_at = -math.inf
 
     @property
     def _yaw(self) -> float:
@@ -84,7 +86,7 @@ class Route:
 
     def ends_within(self, distance: float) -> bool:
         """True if less than ``distance`` m of a given path are left. Always True for planned paths."""
-        return self._given is None or (
+        return self.given is None or (
             self.path is not None and self.path.length - self.s <= distance
         )
 
@@ -95,7 +97,7 @@ class Route:
         """
         if self.path is None:
             return PathTarget(self._stand, 0.0)
-        return PathTarget(self.path, self.s, math.inf if self._given is None else ahead)
+        return PathTarget(self.path, self.s, math.inf if self.given is None else ahead)
 
     def update(
         self, state: RobotState, goal: Goal, changed: bool, reachable: bool, someone: bool = False
@@ -108,10 +110,11 @@ class Route:
         self._someone = someone
         if someone:
             self._waited = 0.0
+        self._changed = self._changed or changed
         since = state.stamp - self._planned_at
         if self.path is None:
-            if self._given is not None:
-                self._join(self._given, state.pose)
+            if self.given is not None:
+                self._join(self.given, state.pose)
                 return REPLACED
             waits = self._no_path_since is not None and since < REPLAN_PERIOD
             return KEPT if waits else self._replan(state, goal, "a plan is needed")
@@ -119,11 +122,12 @@ class Route:
         self.s = self.path.project(*here, low=self.s - 0.5, high=self.s + 2.0)
         if self._unsure:
             return self._improve(state, goal)
-        if since < REPLAN_PERIOD or self._given is not None:
+        if since < REPLAN_PERIOD or self.given is not None:
             return KEPT
         if not reachable:
             return self._replan(state, goal, "the path is blocked nearby")
-        if changed and self.planners.planning_map.zone is None and self._is_blocked():
+        looks, self._changed = self._changed and self.planners.planning_map.zone is None, False
+        if looks and self._is_blocked():
             return self._replan(state, goal, "an obstacle blocks the path")
         if self._is_short:
             return self._replan(state, goal, GOAL_IS_FREE)
@@ -191,12 +195,13 @@ class Route:
 
     def _plan(self, state: RobotState, goal: Goal, planner: str) -> Plan:
         here = turned_pose(state.pose, self._yaw)
-        return self.planners.plan((here.x, here.y), (goal.x, goal.y), True, planner)
+        return self.planners.plan((here.x, here.y), (goal.x, goal.y), planner)
 
     def _take(self, plan: Plan, goal: Goal, reason: str) -> None:
         path, self._is_short = self._part_to_drive(plan, goal)
         self.path, self.s = turned_path(path, -self._yaw), 0.0
-        self.plan, self.plan_id, self.reason = plan, self.plan_id + 1, reason
+        self.plan = self.planners.with_explored(plan)
+        self.plan_id, self.reason = self.plan_id + 1, reason
 
     def _part_to_drive(self, plan: Plan, goal: Goal) -> tuple[Path, bool]:
         """The path to drive now, and whether it ends short of the goal.

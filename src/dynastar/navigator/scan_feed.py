@@ -8,6 +8,7 @@ import numpy as np
 from dynastar.config import shown
 from dynastar.geometry import Pose2D, compose
 from dynastar.navigator.config import NavigatorConfig
+from dynastar.navigator.pose_history import KEPT_FOR
 from dynastar.navigator.readings import Readings
 from dynastar.navigator.repeats import contradicted
 from dynastar.navigator.status import RobotState
@@ -18,7 +19,7 @@ ENOUGH = 0.02  # of the beams contradict a scan that repeats
 AT_REST = 0.01  # m/s and rad/s up to which the robot is at rest
 FIRST_WAIT = 2.0  # s at rest before a lidar that seems frozen is tried again; doubles each time
 LONGEST_WAIT = 60.0  # s
-SILENT = 5.0  # s without a scan, after which a lidar is forgotten; no less than scan_age
+SILENT = 5.0  # s without a scan, after which a lidar is forgotten
 NO_VALID_RANGE = (
     "the scan has no valid range: its readings are NaN, beyond range_max or within the robot's own "
     "footprint (if the driver writes them for no return, add them to lidar.nothing)"
@@ -97,7 +98,7 @@ class ScanFeed:
             if wrong is None and given.stamp > now + 0.5 * self._config.period:
                 wrong = f"the scan is {given.stamp - now:.3f} s ahead of the robot's state"
                 ahead = max(ahead, given.stamp - now)
-            if wrong is None and now - given.stamp > SILENT:
+            if wrong is None and now - given.stamp > KEPT_FOR:  # where the robot was is not known
                 wrong = f"the scan is {now - given.stamp:.1f} s older than the robot's state"
             if wrong is None:
                 scan, wrong = self._news(given, now, pose_at)

@@ -46,7 +46,7 @@ class View(NamedTuple):
 
 
 class Sensing:
-    """Keeps the local map and the tracks up to date, and makes a view of them."""
+    """Keep the local map and the tracks up to date, and make a view of them."""
 
     def __init__(self, robot: Robot, config: NavigatorConfig, planning_map: PlanningMap) -> None:
         self.robot, self.config, self.planning_map = robot, config, planning_map
@@ -153,13 +153,12 @@ class Sensing:
         obstacles = lower_bounds((~occupied).view(np.uint8), resolution)
         hidden = self._hidden.update((local.row0, local.column0), seen, occupied, now)
         if self.trusts_map:
-            hidden = hidden._replace(speed=0.0)  # nobody is where it drives
+            hidden = hidden._replace(speed=0.0)  # the robot drives into unseen space
         return View(
             closed=Closed(
                 Field(local.field, x0, y0, resolution),
                 local.states == SEEN_OCCUPIED,
                 local.boxes,
-                local.depth,
             ),
             distance_to_obstacle=Field(obstacles, x0, y0, resolution),
             hidden=hidden,

@@ -52,7 +52,7 @@ class HiddenSpace:
     def update(
         self, corner: tuple[int, int], seen_free: Mask, occupied: Mask, now: float
     ) -> Hidden:
-        """Takes in which cells (n, n) of the local map the last scans saw free, and which are occupied.
+        """Update from the cells (n, n) of the local map that scans saw free lately, and the occupied ones.
 
         ``corner`` is the lattice index (row, column) of the local map's first cell.
         """
@@ -72,7 +72,7 @@ class HiddenSpace:
         return Hidden(field, self.speed)
 
     def _move_to(self, corner: tuple[int, int]) -> None:
-        """Moves the window to a corner in cells of the local map; what comes in is not cleared."""
+        """Move the window to a corner in cells of the local map; what comes in is not cleared."""
         n = len(self._cleared_until)
         up, right = ((a - b) // FACTOR for a, b in zip(corner, self._corner, strict=True))
         if (up, right) != (0, 0):

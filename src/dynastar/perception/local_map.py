@@ -1,6 +1,7 @@
 """What the sensor saw round the robot, in a window that moves along: free, occupied or unseen."""
 
 import math
+from itertools import product
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
@@ -53,7 +54,7 @@ class LocalMap:
         self.boxes = np.full((n, n), whole_cell(resolution))
         self.states = np.zeros((n, n), np.uint8)
         self.open = np.zeros((n, n), np.bool_)
-        self.field, self.depth = np.zeros((n, n), np.float32), np.zeros((n, n), np.float32)
+        self.field = np.zeros((n, n), np.float32)
 
     @property
     def origin(self) -> tuple[float, float]:
@@ -73,7 +74,10 @@ class LocalMap:
         return abs(self.resolution / resolution - 1.0) < ROUNDED and off < SAME
 
     def moved_onto(self, resolution: float, corner: tuple[float, float]) -> "LocalMap":
-        """A window on another lattice; each cell has the stamps of the one under its centre."""
+        """A window on another lattice.
+
+        A cell is as free as the one under its centre, and has the newest hit whose box it overlaps.
+        """
         other = LocalMap(self.config, resolution, corner)
         middle = 0.5 * len(self.states) * self.resolution
         x0, y0 = self.origin
@@ -83,16 +87,36 @@ class LocalMap:
         rows = np.floor((centres + y - y0) / self.resolution).astype(np.int64)
         columns = np.floor((centres + x - x0) / self.resolution).astype(np.int64)
         other.free_at = picked(self.free_at, rows, columns, kernels.NEVER)
-        other.hit_at = picked(self.hit_at, rows, columns, kernels.NEVER)
+        self._move_hits(other)
         return other
 
+    def _move_hits(self, other: "LocalMap") -> None:
+        """Stamp the hits into the cells of another window that their boxes overlap."""
+        a, (x0, y0) = other.resolution, self.origin
+        rows, columns = np.nonzero(self.hit_at > kernels.NEVER)
+        boxes, stamps = self.boxes[rows, columns], self.hit_at[rows, columns]
+        x, y = x0 + (columns + 0.5) * self.resolution, y0 + (rows + 0.5) * self.resolution
+        within = (
+            0.5 * self.resolution - SAME * a
+        )  # a box that stands for all of its cell reaches further
+        low_x, high_x = (np.clip(boxes[side], -within, within) for side in ("low_x", "high_x"))
+        low_y, high_y = (np.clip(boxes[side], -within, within) for side in ("low_y", "high_y"))
+        parts = np.linspace(0.0, 1.0, math.ceil(self.resolution / a) + 1)
+        for right, up in product(parts, parts):
+            column = np.floor((x + low_x + right * (high_x - low_x) - other.origin[0]) / a)
+            row = np.floor((y + low_y + up * (high_y - low_y) - other.origin[1]) / a)
+            inside = (row >= 0) & (row < len(other.states))
+            inside &= (column >= 0) & (column < len(other.states))
+            at = row[inside].astype(np.int64), column[inside].astype(np.int64)
+            np.maximum.at(other.hit_at, at, stamps[inside])
+
     def forget(self) -> None:
-        """Turns all of the window into unseen."""
+        """Mark all of the window as unseen."""
         self.free_at.fill(kernels.NEVER)
         self.hit_at.fill(kernels.NEVER)
 
     def follow(self, x: float, y: float) -> None:
-        """Keeps (x, y) near the middle of the window; cells that leave it are forgotten."""
+        """Keep (x, y) near the middle of the window; cells that leave it are forgotten."""
         a, n = self.resolution, len(self.states)
         x0, y0 = self.corner
         up = math.floor((y - y0) / a) - n // 2 - self.row0
@@ -117,7 +141,8 @@ class LocalMap:
         """Keep the free cells in a disc round the robot from being forgotten."""
         box, inside = self._cells_in(disc)
         free_at = self.free_at[box]
-        free_at[inside & (self.hit_at[box] < free_at) & (free_at < now)] = now
+        known = (free_at < now) & (free_at >= now - self.config.memory)
+        free_at[inside & known & (self.hit_at[box] < free_at)] = now
 
     def see(self, scan: PlacedScan, moving: Mask) -> None:
         """Mark what a scan shows; ``moving`` (k,) are the points not to be marked as hits."""
@@ -127,7 +152,7 @@ class LocalMap:
         kernels.mark_hits(layers, self.frame, scan.points, moving, times)
 
     def erase(self, disc: Disc) -> None:
-        """Forgets the hits in a disc: what was there has turned out to move."""
+        """Forget the hits in a disc: an obstacle there has turned out to move."""
         box, inside = self._cells_in(disc)
         self.hit_at[box][inside] = kernels.NEVER
 
@@ -143,11 +168,11 @@ class LocalMap:
         return (rows, columns), dx * dx + dy * dy <= radius * radius
 
     def update(self, now: float, barred: Mask, trusted: Mask | None = None) -> None:
-        """Brings ``states``, ``open``, ``field`` and ``depth`` up to date; the rim is never open.
+        """Bring ``states``, ``open`` and ``field`` up to date; the rim is never open.
 
-        ``field`` and ``depth`` are metres between centres: to the nearest closed, and open cell.
-        ``barred`` (n, n) are keep-out cells, which are not open though they may be free. ``trusted``
-        (n, n) are open while unseen.
+        ``field`` is the distance (m) between centres to the nearest cell that is not open. ``barred``
+        (n, n) are keep-out cells, which are not open though they may be free. ``trusted`` (n, n) are
+        open while unseen.
         """
         free_at, hit_at, horizon = self.free_at, self.hit_at, now - self.config.memory
         free = (free_at > hit_at) & (free_at >= horizon)
@@ -158,7 +183,6 @@ class LocalMap:
             self.open |= trusted & ~free & ~occupied
         self.open[[0, -1]] = self.open[:, [0, -1]] = False
         self.field = lower_bounds(self.open.view(np.uint8), self.resolution)
-        self.depth = lower_bounds((~self.open).view(np.uint8), self.resolution)
 
 
 def whole_cell(resolution: float) -> npt.NDArray[Any]:

@@ -51,10 +51,10 @@ def crossings(gaps, first, increment, side):
 
 @njit(cache=True)
 def mark_free(free_at, frame, gaps, sensor):
-    """Stamps the scan's time into ``free_at`` for every cell whose centre lies in observed-free space.
+    """Stamp the scan's time into ``free_at`` for every cell whose centre lies in observed-free space.
 
-    ``frame`` is the window's (resolution, x0, y0), ``gaps`` (n,) are the ranges (m) from one beam to the
-    next, the last one to the first beam. ``sensor`` is a Sensor.
+    A newer stamp stays. ``frame`` is the window's (resolution, x0, y0), ``gaps`` (n,) are the ranges
+    (m) from one beam to the next, the last one to the first beam. ``sensor`` is a Sensor.
     """
     resolution, x0, y0 = frame
     x, y, first = sensor.x, sensor.y, sensor.theta + sensor.angle_min
@@ -77,7 +77,7 @@ def mark_free(free_at, frame, gaps, sensor):
                 k += 1
                 end = ends[k] * height
             if dx * dx + dy * dy < squares[k]:
-                cells[column] = sensor.stamp
+                cells[column] = max(cells[column], sensor.stamp)
 
 
 @njit(cache=True)
@@ -105,7 +105,7 @@ def mark_hits(layers, frame, points, moving, times):
             box.low_x, box.high_x, box.low_y, box.high_y = x, x, y, y
         box.low_x, box.high_x = min(box.low_x, x), max(box.high_x, x)
         box.low_y, box.high_y = min(box.low_y, y), max(box.high_y, y)
-        hit_at[row, column] = now
+        hit_at[row, column] = max(hit, now)
 
 
 @njit(cache=True)

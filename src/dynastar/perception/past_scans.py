@@ -39,24 +39,27 @@ def seen_free_at(x: float, y: float, space: SeenFree) -> float:
 
 
 class PastScans:
-    """The last scan and older ones, farther apart the older they are."""
+    """The last scan of each lidar and older ones, farther apart the older they are."""
 
     def __init__(self) -> None:
-        self._kept: list[PlacedScan] = []
+        self._kept: list[PlacedScan] = []  # the newest first
 
     def add(self, scan: PlacedScan) -> None:
         """Store a scan. Keep no scan older than 30 s, and no more old ones than are needed.
 
-        A scan is needed if its neighbours are more than max(0.1 s, half their age) apart.
+        A scan is needed if its neighbours of the same lidar are more than max(0.1 s, half their age)
+        apart.
         """
         now, kept = scan.sensor.stamp, [scan]
-        stamps = [*(one.sensor.stamp for one in self._kept), -math.inf]
-        for one, older in zip(self._kept, stamps[1:], strict=True):
+        recent = [one for one in self._kept if now - one.sensor.stamp <= MEMORY]
+        same = [one for one in recent if one.mount == scan.mount]
+        stamps = [*(one.sensor.stamp for one in same), -math.inf]
+        for one, older in zip(same, stamps[1:], strict=True):
             newer = kept[-1].sensor.stamp
-            needed = newer - older > max(CLOSEST, GROWTH * (now - newer))
-            if needed and now - one.sensor.stamp <= MEMORY:
+            if newer - older > max(CLOSEST, GROWTH * (now - newer)):
                 kept.append(one)
-        self._kept = kept
+        kept += [one for one in recent if one.mount != scan.mount]
+        self._kept = sorted(kept, key=lambda one: -one.sensor.stamp)
 
     def space(self) -> SeenFree:
         """The space that the scans kept show as free."""

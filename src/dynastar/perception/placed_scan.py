@@ -31,7 +31,7 @@ class Sensor(NamedTuple):
 
 
 class PlacedScan(NamedTuple):
-    """A scan in the map frame.
+    """A scan in the map frame; ``mount`` on the robot tells its lidar.
 
     ``free`` (n,) are the ranges (m) observed free between beam i and beam i + 1, ``points`` (k, 2) the
     end points (m) of the beams that hit something, ``beams`` (k,) the indices of these beams.
@@ -41,6 +41,7 @@ class PlacedScan(NamedTuple):
     free: Floats
     points: Floats
     beams: npt.NDArray[np.int64]
+    mount: Pose2D = Pose2D(0.0, 0.0, 0.0)
 
 
 def placed(
@@ -55,7 +56,8 @@ def placed(
     first, step = scan.angle_min, scan.angle_increment
     sensor = Sensor(scan.stamp, *pose, first, step, len(readings), scan.full_circle)
     free = free_ranges(readings, scan.range_max, sensor, errors, narrowest)
-    return PlacedScan(sensor, free, *scan_points(readings, sensor))
+    points, beams = scan_points(readings, sensor)
+    return PlacedScan(sensor, free, points, beams, scan.mount)
 
 
 def free_ranges(

@@ -218,8 +218,8 @@ def judge(track, group, points, space, now, fastest):
 
     A track moves once its motion is steady and faster than REST_SPEED beyond doubt, and either it lies
     where space was seen free since the track began, or the place where it was seen first is seen free now.
-    Without either, another side of what stands has come into view. It has stopped after REST_TIME below
-    that speed.
+    Without either, another side of an obstacle at rest has come into view. It has stopped after
+    REST_TIME below that speed.
     """
     speed = math.hypot(track.vx, track.vy)
     if speed > fastest:  # two obstacles taken for one

@@ -57,18 +57,6 @@ def estimate(rows: int, columns: int, euclidean: bool) -> int:
     return octile(rows, columns)
 
 
-@njit(cache=True)
-def sum_up(occupied: Bytes, sums: npt.NDArray[np.int32]) -> None:
-    """Fill the summed-area table [rows + 1, columns + 1] of a mask [rows, columns], 0 or 1."""
-    sums[0] = 0
-    for y in range(1, sums.shape[0]):
-        along = 0
-        sums[y, 0] = 0
-        for x in range(1, sums.shape[1]):
-            along += occupied[y - 1, x - 1]
-            sums[y, x] = sums[y - 1, x] + along
-
-
 @njit(cache=True, inline="always")
 def occupied_in(sums: Ints, y: int, x: int, other_y: int, other_x: int) -> int:
     """Occupied cells in the rectangle that two cells (padded coordinates) span."""

@@ -83,6 +83,11 @@ class GridPlanner:
         """True where the disc's centre may not be, [rows, columns]; a copy."""
         return self._inflated_grid.search.occupied
 
+    @property
+    def explored(self) -> Cells:
+        """The cells (n, 2) that the last search expanded, row by row."""
+        return self._inflated_grid.search.expanded_cells()
+
     def mark(self, row0: int, col0: int, patch_blocked: npt.ArrayLike) -> None:
         """Replace the window of the map at (row0, col0), true where a cell is blocked now.
 

@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+import cv2
 import numpy as np
 import numpy.typing as npt
 
@@ -67,6 +68,7 @@ class SearchGrid:
         ringed[1:-1, 1:-1] = mask
         find_near(ringed, self._near[1:-1, 1:-1])
         self._sums: npt.NDArray[np.int32] | None = None
+        self._recounts = False
         self._lines: tuple[jump_kernel.Words, jump_kernel.Words] | None = None
         self._jumps: bool | None = None
         self._labels = np.zeros(0, np.int64)  # made by the first search
@@ -91,16 +93,17 @@ class SearchGrid:
     @property
     def sums(self) -> npt.NDArray[np.int32]:
         """Summed-area table [rows + 1, columns + 1]: counted in the first i rows, j columns."""
-        if self._sums is None:
-            sums = np.empty((self.rows + 1, self.columns + 1), np.int32)
-            counted = self._counted
-            heap_kernel.sum_up(self.occupied.view(np.uint8) if counted is None else counted, sums)
-            self._sums = sums
+        if self._sums is None or self._recounts:
+            counted = self.occupied.view(np.uint8) if self._counted is None else self._counted
+            self._sums = cv2.integral(
+                counted, self._sums, sdepth=cv2.CV_32S
+            )  # fresh memory is slow
+            self._recounts = False
         return self._sums
 
     def recount(self) -> None:
         """Tell that ``counted`` has changed: the sums for P of Eq. 2 are made again when needed."""
-        self._sums = None
+        self._recounts = True
 
     @property
     def lines(self) -> tuple[jump_kernel.Words, jump_kernel.Words]:
