@@ -8,7 +8,7 @@ world = World(scenario)  # on a robot: its odometry, lidar and motor driver
 config = NavigatorConfig(latency=0.1, range_error=0.03, pose_error=0.02, heading_error=0.01)
 navigator = Navigator(scenario.grid, scenario.robot, config)
 navigator.set_goal((7.2, 10.0))
-while navigator.status.state not in ("arrived", "blocked") or not world.resting:
+while not (world.contact or (world.resting and navigator.status.state in ("arrived", "blocked"))):
     state = RobotState(world.time, world.pose, world.twist)
     world.step(navigator.command(state, world.scan()), 0.1)
 print(f"{world.time:.1f} s: {navigator.status.state}, {navigator.status.reason}")

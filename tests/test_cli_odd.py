@@ -5,7 +5,9 @@ import os
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from dynastar.cli import main
 from test_cli import ROOM, SCENARIO, refused, run
@@ -131,6 +133,38 @@ def test_results_have_units(capsys: pytest.CaptureFixture[str], folder: Path) ->
     _, out, _ = run(capsys, *PLAN)
     assert "length       6.000 m\n" in out
     assert " ms\n" in out
+
+
+def test_what_is_read_is_not_replaced_by_an_output(
+    capsys: pytest.CaptureFixture[str], folder: Path
+) -> None:
+    Image.fromarray(np.full((30, 40), 254, np.uint8)).save(folder / "room.png")
+    (folder / "room.yaml").write_text(
+        "image: room.png\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\n"
+        "occupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    )
+    (folder / "room.toml").write_text('map = "room.yaml"\nstart = [1, 1]\ngoal = [3, 2]\n')
+    before = (folder / "room.png").read_bytes()
+    plan = ["plan", "room.yaml", "--start", "1", "1", "--goal", "3", "2"]
+    for words in (["info", "room.yaml"], ["info", "room.toml"], plan):
+        words = [str(folder / word) if word.startswith("room.") else word for word in words]
+        assert main([*words, "--out", str(folder / "room.png")]) == 2
+        assert "that is what is read here; name another file" in capsys.readouterr().err
+        assert main([*words, "--out", str(folder / "a.bmp")]) == 2
+        assert "expected a file in .png, .svg, .pdf" in capsys.readouterr().err
+    assert (folder / "room.png").read_bytes() == before
+
+
+def test_a_folder_does_not_hide_a_name_that_is_built_in(
+    capsys: pytest.CaptureFixture[str], folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(folder)
+    (folder / "jackal").mkdir()
+    assert main(["check", "--robot", "jackal", "--no-time"]) in (0, 1)
+    assert "0.508 m long" in capsys.readouterr().out
+    (folder / "mine").mkdir()
+    assert main(["check", "--robot", "mine", "--no-time"]) == 2
+    assert "mine: this is a directory" in capsys.readouterr().err
 
 
 def test_outputs_are_written_through_links(folder: Path) -> None:

@@ -22,6 +22,19 @@ def test_a_keep_out_mask_of_another_resolution_and_place_is_laid_over():
     assert with_keepout(GRID, turned).keepout[2, 1]
 
 
+@pytest.mark.parametrize("column", range(12, 20))
+def test_a_zone_one_cell_wide_of_a_finer_mask_is_kept(column):
+    fine = np.zeros((40, 40), np.int8)
+    fine[:, column] = 100
+    grid = OccupancyGrid(np.zeros((20, 20), np.int8), GridFrame(0.05, 0.0, 0.0, 0.3))
+    mask = OccupancyGrid(fine, GridFrame(0.025, 0.0, 0.0, 0.3))
+    assert with_keepout(grid, mask).keepout[:, column // 2].all()
+    assert with_keepout(grid, mask).keepout.sum() == 20
+    limits = with_speed_limits(grid, OccupancyGrid(fine // 2, mask.frame), 1.0).speed_limit
+    assert limits[:, column // 2] == pytest.approx(0.5)
+    assert np.isinf(limits).sum() == 380
+
+
 def test_percentages_are_of_the_top_speed_and_zero_is_no_limit():
     values = np.array([[0, -1, 20, 100, 50, 0]] * 4, np.int8)
     mask = OccupancyGrid(values, GRID.frame)

@@ -100,7 +100,7 @@ def test_the_tutorial_works_as_typed(shell):
     for name in "a.json", "b.json":
         totals = json.loads((shell.folder / name).read_text(encoding="utf-8"))
         assert (totals["missions"], totals["arrived"]) == (2, 2)
-    for picture in "office.png", "plan.png", "plan-on-map.png", "episode.png", "my.png":
+    for picture in "drawing.png", "plan.png", "plan-on-map.png", "episode.png", "my.png":
         assert (shell.folder / picture).stat().st_size > 5000
     assert not (shell.folder / "examples" / "office" / "out").exists()
 

@@ -1,6 +1,8 @@
 """Keep-out zones and speed limits as masks over a map, as Nav2's costmap filters have them."""
 
 import math
+from collections.abc import Iterator
+from itertools import product
 from typing import Annotated, Literal, NamedTuple
 
 import cv2
@@ -11,6 +13,7 @@ from dynastar.config import Field, self_checking
 from dynastar.errors import MapError
 from dynastar.grid import OCCUPIED_FROM, OccupancyGrid
 
+ROUNDED = 1e-6  # relative error of a resolution that was a float32, as in ROS messages
 AT_ONCE = 2**18  # cells that a mask is laid over at a time, to bound the memory
 
 
@@ -27,8 +30,9 @@ class SpeedScale(NamedTuple):
 
 def with_keepout(grid: OccupancyGrid, mask: OccupancyGrid) -> OccupancyGrid:
     """``grid`` with keep-out zones where ``mask``, of any resolution, is occupied."""
-    values = _laid_over(grid, mask, -1)
-    keepout = values >= OCCUPIED_FROM
+    keepout = np.zeros((grid.rows, grid.columns), np.bool_)
+    for values in _laid_over(grid, mask, -1):
+        keepout |= values >= OCCUPIED_FROM
     if grid.keepout is not None:
         keepout |= grid.keepout
     return OccupancyGrid(grid.values, grid.frame, keepout, grid.speed_limit)
@@ -55,7 +59,10 @@ def with_speed_limits(
     Where the mask is unknown, 0 or absent there is no limit, nor where the scale says 0, as in Nav2.
     Raises MapError where it says less than that.
     """
-    limits = cv2.LUT(_laid_over(grid, mask, 0).view(np.uint8), _limits_by_value(v_max, scale))
+    by_value = _limits_by_value(v_max, scale)
+    limits = np.full((grid.rows, grid.columns), math.inf, np.float32)
+    for values in _laid_over(grid, mask, 0):
+        np.minimum(limits, cv2.LUT(values.view(np.uint8), by_value), out=limits)
     if (limits < 0.0).any():
         lowest = limits.min() / (0.01 * v_max if scale.type == "percent" else 1.0)
         raise MapError(
@@ -77,15 +84,27 @@ def _limits_by_value(v_max: float, scale: SpeedScale) -> npt.NDArray[np.float32]
     return limits.astype(np.float32)
 
 
-def _laid_over(grid: OccupancyGrid, mask: OccupancyGrid, outside: int) -> npt.NDArray[np.int8]:
-    """The mask's value at the centre of each cell of ``grid``."""
+def _laid_over(
+    grid: OccupancyGrid, mask: OccupancyGrid, outside: int
+) -> Iterator[npt.NDArray[np.int8]]:
+    """The mask's values at the centre of each cell of ``grid``; of a finer mask, at places all over it."""
+    fine = math.ceil(grid.resolution / mask.resolution - ROUNDED)
+    places = (np.arange(fine) + 0.5) / fine
+    for place in product(places, places):
+        yield _values_at(grid, mask, outside, place)
+
+
+def _values_at(
+    grid: OccupancyGrid, mask: OccupancyGrid, outside: int, place: tuple[float, float]
+) -> npt.NDArray[np.int8]:
+    """The mask's value at a place (row, column from 0 to 1) within each cell of ``grid``."""
     values = np.full((grid.rows, grid.columns), outside, np.int8)
     step = max(1, AT_ONCE // grid.columns)
     for first in range(0, grid.rows, step):
         part = values[first : first + step]
-        centres = np.indices(part.shape).reshape(2, -1).T + (first + 0.5, 0.5)
-        places = mask.frame.points_to_grid(grid.frame.points_to_world(centres))
-        rows, columns = np.floor(places).astype(np.int64).T
+        points = np.indices(part.shape).reshape(2, -1).T + (first + place[0], place[1])
+        found = mask.frame.points_to_grid(grid.frame.points_to_world(points))
+        rows, columns = np.floor(found).astype(np.int64).T
         inside = (rows >= 0) & (rows < mask.rows) & (columns >= 0) & (columns < mask.columns)
         part[inside.reshape(part.shape)] = mask.values[rows[inside], columns[inside]]
     return values

@@ -34,6 +34,7 @@ class Made:
     follows_after: float = 0.1
     mount: Pose2D | None = Pose2D(0.0, 0.0, 0.0)
     clock: float = 0.0
+    odd: str = ""  # one message that cannot be used
 
     def speed(self, time: float) -> float:
         """Commanded speed, m/s."""
@@ -57,7 +58,20 @@ class Made:
                 bag.write(topics[1], ODOMETRY, at, message)
                 command = OUT.twist(Twist(self.speed(time), 0.0))
                 bag.write(topics[2], "geometry_msgs/msg/Twist", at, command)
+            self._write_odd(bag)
         return folder
+
+    def _write_odd(self, bag):
+        if self.odd == "tf":
+            wheel = OUT.transforms([("base", "wheel", Pose2D(math.nan, 0.0, 0.0))], 3.0)
+            bag.write("/tf", "tf2_msgs/msg/TFMessage", 9.0, wheel)
+        elif self.odd == "odometry":
+            odd = OUT.odometry(Pose2D(0.3, 0.0, 0.0), Twist(math.nan, 0.0), FRAMES, 8.0)
+            bag.write("/odom", ODOMETRY, 9.0, odd)
+        elif self.odd == "scan":
+            empty = self._scan(8.0)
+            empty.ranges = np.empty(0, np.float32)
+            bag.write("/scan", "sensor_msgs/msg/LaserScan", 9.0, empty)
 
     def _scan(self, time):
         ranges = np.full(self.beams, 4.0, np.float32)
@@ -183,3 +197,18 @@ def test_a_recording_without_scans_or_that_is_none_is_refused(tmp_path):
     (tmp_path / "text.mcap").write_text("no recording")
     with pytest.raises(DataError, match=r"text\.mcap"):
         findings(tmp_path / "text.mcap")
+
+
+@pytest.mark.parametrize(
+    ("what", "says"),
+    [
+        ("tf", "Of /tf 1 message refused, the first since the transform of the frame 'wheel'"),
+        ("odometry", "Of odom 1 message refused, the first since the odometry is not finite"),
+        ("scan", "Of scan 1 message refused"),
+    ],
+)
+def test_one_bad_message_is_named_and_the_rest_is_checked(tmp_path, what, says):
+    found = findings(Made(odd=what).write(tmp_path / "bag"))
+    assert says in " ".join(finding.words() for finding in found.values())
+    assert found["recorded speeds"].level == "ok"
+    assert "nan" not in found["recorded speeds"].text

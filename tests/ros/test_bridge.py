@@ -3,20 +3,25 @@
 import json
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 
 from dynastar.errors import InputError
 from dynastar.geometry import Goal, Pose2D, Twist
+from dynastar.io import load_scenario
 from dynastar.navigator import configured
 from dynastar.robot import ROBOTS
 from dynastar.ros.bag import as_read, make
 from dynastar.ros.bridge import Bridge, start_request, started
 from dynastar.ros.outgoing import Messages
 from dynastar.ros.settings import NodeSettings, robot_from, robot_of, robot_table
+from dynastar.simulation.run import effective_config
 
 OUT = Messages(make)
+EXAMPLES = Path(__file__).parents[2] / "examples"
 ROOM = np.zeros((100, 100), np.int8)
 ROOM[[0, -1]] = ROOM[:, [0, -1]] = 100
 START = Pose2D(1.0, 2.5, 0.0)
@@ -157,6 +162,45 @@ def test_a_pose_from_tf_has_to_be_there_and_new():
     static = OUT.transforms([("map", "odom", Pose2D(0.5, 0.0, 0.0))], 0.0)
     bridge.take("/tf_static", static)
     assert feed(bridge, 9.0).state == "idle"
+
+
+def test_a_pose_from_tf_that_is_stamped_ahead_brakes_it_until_one_of_now_comes():
+    own = NodeSettings(pose_source="tf", pose_age=1.0)
+    bridge = Bridge(own, ROBOTS["turtlebot3_burger"], configured("default"))
+    bridge.take("map", a_map())
+    bridge.take("/tf", OUT.transforms([("map", "odom", Pose2D(0.5, 0.0, 0.0))], 5000.0))
+    assert "is stamped 5000.00 s ahead of the clock" in feed(bridge, 0.0).reason
+    bridge.take("/tf", OUT.transforms([("map", "odom", Pose2D(0.7, 0.0, 0.0))], 0.05))
+    tick = feed(bridge, 0.05)
+    assert (tick.state, tick.robot.pose.x) == ("idle", 1.7)
+
+
+def test_a_scenario_tells_the_node_all_of_its_robot():
+    from dynastar.robot import Limits
+    from dynastar.ros.settings import fields_of, flat, parameters_of
+
+    file = EXAMPLES / "features" / "robot.toml"
+    scenario = load_scenario(file)
+    words = parameters_of(scenario)
+    told = dict(word.split(":=") for word in words[2::2])
+    assert set(words[1::2]) == {"-p"}
+    values = {name: yaml.safe_load(value) for name, value in told.items()}
+    known = {
+        *fields_of(NodeSettings),
+        *fields_of(type(configured())),
+        *fields_of(Limits, "limits."),
+    }
+    assert set(values) <= known
+    limits = scenario.robot.limits._asdict()
+    assert {name: values[f"limits.{name}"] for name in limits} == limits
+    config = effective_config(scenario)
+    preset = flat(configured(scenario.preset))
+    for name, value in flat(config).items():
+        assert values.get(name, preset[name]) == value
+    shape = scenario.robot.footprint
+    assert values.get("radius", shape.circumscribed) == shape.circumscribed
+    assert values.get("polygon", []) == pytest.approx(shape.vertices.reshape(-1).tolist())
+    assert values["laser_pose"] == pytest.approx(list(scenario.robot.lidar.mount))
 
 
 def test_the_readings_that_mean_no_return_are_the_robots_and_are_recorded():

@@ -134,6 +134,39 @@ def test_a_map_with_a_mask_counts_if_it_is_asked_for():
     assert loop.bridge.frame == "map"
 
 
+def test_nothing_passes_before_a_map_that_is_asked_for():
+    loop = Loop(use_map=True)
+    assert loop.ticks(10)[-1].reason == "no map has come yet"
+    assert loop.x == START.x
+    values = np.zeros((100, 100), np.int8)
+    assert "frame" in loop.bridge.take("map", OUT.grid(values, (0.05, 0.0, 0.0), "odom", 0.0))
+    assert "map: the frame" in loop.ticks(2)[-1].reason or "frame" in loop.ticks(2)[-1].reason
+    assert loop.x == START.x
+    assert loop.bridge.take("map", OUT.grid(values, (0.05, 0.0, 0.0), "map", 0.0)) == ""
+    loop.ticks(30)
+    assert loop.x > START.x
+
+
+def test_a_mask_that_is_refused_stops_it_until_a_good_one_comes():
+    loop = Loop(use_map=True)
+    values = np.zeros((100, 100), np.int8)
+    loop.bridge.take("map", OUT.grid(values, (0.05, 0.0, 0.0), "map", 0.0))
+    loop.bridge.take("keepout_filter_mask", OUT.grid(values, (0.05, 0.0, 0.0), "odom", 0.0))
+    assert loop.ticks(10)[-1].reason.startswith("keepout_filter_mask: ")
+    assert loop.x == START.x
+    loop.bridge.take("keepout_filter_mask", OUT.grid(values, (0.05, 0.0, 0.0), "map", 0.0))
+    loop.ticks(30)
+    assert loop.x > START.x
+
+
+def test_a_lidar_whose_clock_is_a_little_ahead_does_not_turn_time_back(loop):
+    for k in range(60):
+        if k % 2:
+            loop.bridge.take("scan", a_scan(loop.now + 0.05, frame="front"))
+        tick = loop.tick(data=k % 2 == 0)
+        assert "time went back" not in tick.reason
+
+
 def test_a_clock_that_went_back_starts_it_anew(loop):
     loop.ticks(30)
     loop.now = 1.0

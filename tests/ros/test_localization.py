@@ -21,3 +21,21 @@ def test_odometry_is_corrected_by_a_pose_in_the_map():
     assert found.stamp == 1.0
     with pytest.raises(InputError, match="finite"):
         found.add_odometry(2.0, Pose2D(math.nan, 0.0, 0.0), Twist(0.0, 0.0))
+
+
+def test_a_pose_that_comes_before_the_odometry_is_kept_for_it():
+    found = Localization("amcl")
+    found.add_pose(0.5, Pose2D(5.0, 5.0, 0.0))
+    assert found.at(1.0) is None
+    found.add_odometry(1.0, Pose2D(1.0, 0.0, 0.0), Twist(0.0, 0.0))
+    assert found.at(1.0).pose == pytest.approx((5.0, 5.0, 0.0))
+    found.reset()
+    found.add_odometry(0.1, Pose2D(2.0, 0.0, 0.0), Twist(0.0, 0.0))
+    assert found.at(0.1).pose == pytest.approx((6.0, 5.0, 0.0))
+
+
+def test_one_message_of_another_time_does_not_block_those_that_follow():
+    found = Localization("odom")
+    found.add_odometry(3600.0, Pose2D(9.0, 9.0, 0.0), Twist(0.0, 0.0))
+    found.add_odometry(1.0, Pose2D(1.0, 0.0, 0.0), Twist(0.0, 0.0))
+    assert found.at(1.0).pose == Pose2D(1.0, 0.0, 0.0)

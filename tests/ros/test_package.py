@@ -19,7 +19,7 @@ def test_its_parameters_are_those_of_the_node():
     from dynastar.ros.settings import NodeSettings, fields_of, nested
 
     given = yaml.safe_load((PACKAGE / "config" / "dynastar.yaml").read_text())
-    values = given["dynastar"]["ros__parameters"]
+    values = given["/**"]["ros__parameters"]  # in any namespace
     own = fields_of(NodeSettings)
     checked(NodeSettings, {name: value for name, value in values.items() if name in own})
     others = nested({name: value for name, value in values.items() if name not in own})

@@ -45,14 +45,45 @@ def test_chains_are_composed(a, b, c):
 
 def test_the_newest_counts_and_what_is_static_stays():
     found = Transforms()
-    for x, time, newest in ((1.0, 5.0, 1.0), (2.0, 4.0, 1.0), (3.0, 6.0, 3.0)):
+    for x, time, newest in ((1.0, 5.0, 1.0), (2.0, 4.8, 1.0), (3.0, 6.0, 3.0)):
         found.add(OUT.transforms([("map", "odom", Pose2D(x, 0.0, 0.0))], time), static=False)
         assert found.planar("map", "odom").pose.x == newest
-    assert found.age("odom", 6.5) == pytest.approx(0.5)
+    assert found.ages("map", "odom", 6.5) == pytest.approx([0.5])
     found.add(OUT.transforms([("base", "laser", Pose2D(0.1, 0.0, 0.0))], 0.0), static=True)
-    assert found.age("laser", 1e9) == -math.inf
+    assert found.ages("base", "laser", 1e9) == []
+    found.add(OUT.transforms([("base", "laser", Pose2D(0.2, 0.0, 0.0))], 7.0), static=False)
+    assert found.planar("base", "laser").pose.x == 0.1
     found.clear()
     assert found.planar("map", "odom") is None
+    assert found.planar("base", "laser").pose.x == 0.1
+
+
+def test_each_transform_of_a_chain_has_its_age():
+    found = Transforms()
+    still = Pose2D(0.0, 0.0, 0.0)
+    found.add(OUT.transforms([("map", "earth", still)], 1.0), static=False)
+    found.add(OUT.transforms([("earth", "odom", still)], 0.0), static=True)
+    found.add(OUT.transforms([("odom", "base", still)], 3.0), static=False)
+    assert found.ages("map", "base", 4.0) == pytest.approx([1.0, 3.0])
+    assert found.ages("nowhere", "base", 4.0) == pytest.approx([1.0, 3.0])
+    assert found.ages("base", "base", 4.0) == []
+
+
+def test_a_clock_that_is_set_back_does_not_keep_an_old_transform():
+    found = Transforms()
+    for x, time in ((1.0, 5000.0), (2.0, 10.0)):
+        found.add(OUT.transforms([("map", "odom", Pose2D(x, 0.0, 0.0))], time), static=False)
+    assert found.planar("map", "odom").pose.x == 2.0
+
+
+def test_a_bad_transform_does_not_drop_those_beside_it():
+    found = Transforms()
+    bad, good = (
+        ("base", "wheel", Pose2D(math.nan, 0.0, 0.0)),
+        ("base", "laser", Pose2D(0.1, 0.0, 0.0)),
+    )
+    with pytest.raises(InputError, match="'wheel' is not finite"):
+        found.add(OUT.transforms([bad, good], 0.0), static=True)
     assert found.planar("base", "laser").pose.x == 0.1
 
 

@@ -22,6 +22,12 @@ GRID = OccupancyGrid.from_occupied(np.zeros((20, 40), bool), 0.5)
 BOX = np.array([[12.0, 4.0], [13.0, 4.0], [13.0, 6.0], [12.0, 6.0]])
 
 
+@pytest.mark.parametrize("kind", ["scans_late", "commands_late"])
+def test_nothing_is_late_by_less_than_nothing(kind):
+    with pytest.raises(ScenarioError, match=r"size -0\.5: expected 0 or more"):
+        Fault(kind, 1.0, size=-0.5)
+
+
 class Witness:
     """Drives straight on at ``v`` and keeps what it was given."""
 
@@ -242,3 +248,10 @@ def test_a_seed_gives_the_same_faults():
     for (_, a), (_, b) in zip(first, second, strict=True):
         assert np.array_equal(a.ranges, b.ranges, equal_nan=True)
     assert replace(fault, size=0.2).size == 0.2
+
+
+@pytest.mark.parametrize("kind", ["scans_frozen", "scans_repeated", "state_frozen"])
+def test_what_is_frozen_from_the_start_is_the_first_that_is_delivered(kind):
+    states, scans = zip(*under(Fault(kind, 0.0, 1.0))[0].given[:9], strict=True)
+    poses, ranges = {state.pose for state in states}, {scan.ranges.tobytes() for scan in scans}
+    assert len(poses if kind == "state_frozen" else ranges) == 1

@@ -86,6 +86,12 @@ def test_a_command_that_is_not_finite_is_refused():
         World(scenario(), START).step(Twist(math.nan, 0.0), 0.1)
 
 
+@pytest.mark.parametrize("duration", [0.0, -0.1, math.nan, math.inf])
+def test_a_step_that_takes_no_time_is_refused(duration):
+    with pytest.raises(InputError, match="expected seconds, more than 0"):
+        World(scenario(), START).step(Twist(0.1, 0.0), duration)
+
+
 def test_driving_into_a_wall_is_a_moving_contact_at_the_wall():
     occupied = np.zeros((40, 40), bool)
     occupied[:, 24:] = True

@@ -221,14 +221,33 @@ def test_the_command_writes_the_file_and_names_what_is_missing(drives, tmp_path,
     assert "latency: 0.1" in capsys.readouterr().out
     assert "[robot.limits]" in out.read_text("utf-8")
     bag = str(drives[1][1])
+    assert main(["tune", "--bag", bag, "--robot", "jackal", "--out", str(out)]) == 2
+    assert f"--out {out}: is there already; name a new file" in capsys.readouterr().err
+    out = tmp_path / "jackal.toml"
     assert main(["tune", "--bag", bag, "--robot", "jackal", "--out", str(out)]) == 0
     assert 'base = "jackal"' in out.read_text("utf-8")
+    out = tmp_path / "other.toml"
     assert main(["tune", "--bag", bag, "--topic", "cmd_vel=/base/cmd", "--out", str(out)]) == 2
     assert "give --topic cmd_vel=TOPIC" in capsys.readouterr().err
+    assert main(["tune", "--bag", bag, "--hours", "1", "--out", str(out)]) == 2
+    assert "--hours goes with a search, not with --bag" in capsys.readouterr().err
     assert main(["tune", "--bag", bag, "--topic", "speed=/cmd_vel"]) == 2
     assert "NAME one of scan, odom, cmd_vel" in capsys.readouterr().err
     with pytest.raises(DataError, match="no such recording"):
         read_drive(tmp_path / "nothing")
+
+
+def test_what_a_robot_file_declares_and_no_recording_tells_is_kept(drives, tmp_path):
+    mine, out = tmp_path / "mine.toml", tmp_path / "robot.toml"
+    mine.write_text(
+        '[robot]\nbase = "jackal"\n[navigator]\npose_error = 0.07\nscan_age = 0.5\n'
+        "dwa = {weights = {risk = 11.0}}\nlocal_map = {narrowest = 0.03}\n"
+    )
+    words = ["tune", "--bag", str(drives[1][1]), "--robot", str(mine), "--out", str(out)]
+    assert main(words) == 0
+    config = io.load_robot(out)[1]
+    assert (config.pose_error, config.scan_age) == (0.07, 0.5)
+    assert (config.dwa.weights.risk, config.local_map.narrowest) == (11.0, 0.03)
 
 
 def test_what_no_robot_can_be_is_no_file(drives, tmp_path, capsys, monkeypatch):

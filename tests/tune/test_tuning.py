@@ -127,7 +127,7 @@ def test_one_mission_for_a_robot_of_a_file(tmp_path):
 
 def test_without_optuna_the_extra_is_named(monkeypatch, capsys):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    assert main(["tune"]) == 1
+    assert main(["tune"]) == 2
     assert "tuning needs optuna, matplotlib, scipy: pip install" in capsys.readouterr().err
 
 

@@ -73,7 +73,10 @@ def _client(address: str) -> Any:
 def _check_workers(client: Any, address: str) -> None:
     from dynastar.bench.versions import code_version
 
-    found = client.run(code_version)
+    try:
+        found = client.run(code_version)
+    except ImportError as error:
+        raise InputError(f"--dask {address}: a worker lacks a package: {error}") from None
     if not found:
         raise InputError(f"--dask {address}: the cluster has no workers")
     here = code_version()

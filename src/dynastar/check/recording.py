@@ -1,5 +1,6 @@
 """What a recording says of a robot: when its scans and odometry came, and what is in them."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -8,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.config import counted
 from dynastar.errors import DataError, InputError
 from dynastar.geometry import Pose2D, Twist, wrap_angle
 from dynastar.navigator import NavigatorConfig, RobotState
@@ -98,6 +100,7 @@ class _Collected:
     asked: Twist = REST
     followed: Twist = REST
     hints: dict[str, None] = field(default_factory=dict)
+    refused: dict[str, list[str]] = field(default_factory=dict)
     state: RobotState | None = None
     base: str = ""
     mount: Pose2D | None = None
@@ -110,13 +113,18 @@ class _Collected:
 
     def take(self, short: str, at: float, message: Any) -> None:
         """Takes in a message that was recorded at a time (s)."""
-        if short == COMMANDS:
-            self._take_command(at, message)
-        elif short in ("/tf", "/tf_static"):
-            self.transforms.add(message, static=short.endswith("static"))
-        else:
-            self.stamps[short].append((seconds(message.header.stamp), at))
-            (self._take_odometry if short == "odom" else self._take_scan)(message)
+        try:
+            if short == COMMANDS:
+                self._take_command(at, message)
+            elif short in ("/tf", "/tf_static"):
+                self.transforms.add(message, static=short.endswith("static"))
+            else:
+                (self._take_odometry if short == "odom" else self._take_scan)(message)
+                self.stamps[short].append((seconds(message.header.stamp), at))
+        except (
+            InputError
+        ) as error:  # as a robot's node does, which says so and drives by the others
+            self.refused.setdefault(short, []).append(str(error))
 
     def _take_command(self, at: float, message: Any) -> None:
         self.commands.append(at)
@@ -124,10 +132,13 @@ class _Collected:
 
     def _take_odometry(self, message: Any) -> None:
         stamp, twist = seconds(message.header.stamp), twist_of(message.twist.twist)
+        pose = pose_of(message.pose.pose, "the odometry")
+        if not all(map(math.isfinite, (*pose, *twist))):
+            raise InputError("the odometry is not finite")
         self.speeds.append(twist)
         if self.state is not None and self.commands:
             self._follow(self.state, stamp - self.state.stamp)
-        self.state = RobotState(stamp, pose_of(message.pose.pose, "the odometry"), twist)
+        self.state = RobotState(stamp, pose, twist)
         self.base = message.child_frame_id.lstrip("/")
 
     def _follow(self, state: RobotState, duration: float) -> None:
@@ -145,15 +156,14 @@ class _Collected:
     def _take_scan(self, message: Any) -> None:
         placed = self.transforms.planar(self.base, message.header.frame_id.lstrip("/"))
         scan = scan_of(message, placed or Mount(self.robot.lidar.mount))
+        if (fault := scan.fault()) is not None:
+            raise InputError(fault)
         span = scan.angle_increment * max(len(scan.ranges) - 1, 0)
         self.scans.append((len(scan.ranges), abs(span), scan.range_min, scan.range_max))
         if placed is not None:
             x, y, theta = placed.pose
             self.mount = Pose2D(x, y, wrap_angle(theta + scan.angle_min + 0.5 * span))
-        try:
-            self.readings.interpreted(scan)
-        except InputError as error:
-            self.hints[str(error)] = None
+        self.readings.interpreted(scan)
         self.hints |= dict.fromkeys(self.readings.hints)
 
     def recording(self, path: str | Path) -> Recording:
@@ -161,6 +171,10 @@ class _Collected:
         for short, what in (("scan", "scans"), ("odom", "messages of odometry")):
             if len(self.stamps[short]) < 2:
                 raise DataError(f"{path}: has {len(self.stamps[short])} {what}: expected 2 or more")
+        refused = [
+            f"of {short} {counted(len(words), 'message')} refused, the first since {words[0]}"
+            for short, words in self.refused.items()
+        ]
         beams, fov, low, high = map(np.array, zip(*self.scans, strict=True))
         return Recording(
             Stream(*np.array(self.stamps["scan"]).T),
@@ -171,7 +185,7 @@ class _Collected:
             low,
             high,
             np.array(self.speeds),
-            tuple(self.hints),
+            (*self.hints, *refused),
             self.latency,
             self.mount,
         )

@@ -17,7 +17,7 @@ from typing import Any, TextIO, cast
 
 from dynastar import __version__
 from dynastar.cli.parsing import OneLineParser
-from dynastar.errors import DynastarError, DynastarWarning, InputError
+from dynastar.errors import DynastarError, DynastarWarning, InputError, MissingPackage
 from dynastar.interrupt import INTERRUPTED
 from dynastar.terminal import Printable
 
@@ -44,7 +44,7 @@ COMMANDS = {
 EXAMPLES = """\
 examples:
   dynastar demo
-  dynastar info office.yaml --out office.png
+  dynastar info office.yaml --out drawing.png
   dynastar plan office.yaml --start 2 2 --goal 38 23 --radius 0.25
   dynastar run examples/office/office.toml --out out/office
   dynastar bench paper --missions 20
@@ -84,7 +84,7 @@ def _run(words: list[str]) -> int:
         sys.stdout.flush()
         return status
     except DynastarError as error:
-        return _say(str(error), 2 if isinstance(error, InputError) else 1)
+        return _say(str(error), 2 if isinstance(error, InputError | MissingPackage) else 1)
     except KeyboardInterrupt:
         return _say("interrupted", INTERRUPTED)
     except BrokenPipeError:  # the reader of the output has closed it: nothing to add

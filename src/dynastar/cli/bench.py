@@ -200,7 +200,8 @@ def _run_all(arguments: argparse.Namespace) -> int:
     _write(result, file, keep)
     save(scoreboard.picture(result), folder / "all.png")
     text = "\n\n".join(map(as_text, (table(result), quality_table(result))))
-    (folder / "all.txt").write_text(text + "\n", encoding="utf-8")
+    with io.written_aside(folder / "all.txt") as aside:
+        aside.write_text(text + "\n", encoding="utf-8")
     print(as_json(result) if arguments.json_out == "-" else text)
     print(f"the table and the picture are in {folder}, all rows in {file}", file=sys.stderr)
     return 0

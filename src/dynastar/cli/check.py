@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from dynastar import io
 from dynastar.cli.arguments import add_json, add_robot, add_set
 from dynastar.cli.outputs import make_folder
-from dynastar.cli.parsing import path
+from dynastar.cli.parsing import path, refuse_unheard
 from dynastar.cli.show import as_json
 from dynastar.errors import InputError
 from dynastar.extras import require
@@ -82,6 +82,8 @@ def execute(arguments: argparse.Namespace) -> int:
     robot, config, grid = _given(arguments)
     if arguments.bag is not None:
         require("bags", "recordings need")
+    else:
+        refuse_unheard(arguments, {"topic": []}, "goes with --bag")
     folder = None if arguments.out is None else make_folder("--out", arguments.out)
     if not arguments.no_time:
         prepare()

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from dynastar import io
 from dynastar.cli.arguments import add_json
-from dynastar.cli.outputs import check_file
+from dynastar.cli.outputs import check_picture
 from dynastar.cli.parsing import path
 from dynastar.cli.show import as_json, as_table
 
@@ -23,7 +23,7 @@ DESCRIPTION = (
 EXAMPLES = """\
 examples:
   dynastar info office.yaml
-  dynastar info examples/office/office.toml --out office.png
+  dynastar info examples/office/office.toml --out drawing.png
   dynastar info out/office/episode.npz --json"""
 
 
@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Prints what the file holds, and draws it if asked."""
     file: Path = arguments.file
-    picture = check_file("--out", arguments.out)
+    picture = check_picture("--out", arguments.out, [file])
     suffix = file.suffix.lower()
     episode = io.load_episode(file) if suffix == ".npz" else None
     scenario = io.load_scenario(file) if suffix == ".toml" else None

@@ -1,14 +1,24 @@
 """Outputs are checked before anything is run, so that nothing is lost at the end of an hour."""
 
 import os
+import re
+from collections.abc import Iterable
 from pathlib import Path
 
 from dynastar.errors import InputError
+from dynastar.extras import require
 from dynastar.io.paths import local_path
 
+NAMING = ".toml", ".yaml", ".yml"
+MOST_TEXT = 2**20  # bytes, of a file that may name others
+PICTURES = ".png", ".svg", ".pdf"
 
-def check_file(option: str, name: str | Path | None) -> Path | None:
-    """The file to write, None for none or "-"; InputError if it cannot be written."""
+
+def check_file(option: str, name: str | Path | None, read: Iterable[Path] = ()) -> Path | None:
+    """The file to write, None for none or "-"; InputError if it cannot be written.
+
+    It may not be one of the files that are ``read``, nor one that these name, as a map its image.
+    """
     if name is None or str(name) == "-":
         return None
     file = local_path(name)
@@ -25,6 +35,32 @@ def check_file(option: str, name: str | Path | None) -> Path | None:
         raise InputError(f"{option} {name}: is no regular file; name another")
     if not os.access(folder, os.W_OK) or (known and not os.access(file, os.W_OK)):
         raise InputError(f"{option} {name}: cannot be written; name another")
+    if known and file.resolve() in set().union(*map(_read_with, read)):
+        raise InputError(f"{option} {name}: that is what is read here; name another file")
+    return file
+
+
+def _read_with(file: Path, found: frozenset[Path] = frozenset()) -> frozenset[Path]:
+    """A file and those that it names, if it is a text that may: a scenario its map, a map its image."""
+    if file.resolve() in found or not file.is_file():
+        return found
+    found |= {file.resolve()}
+    if file.suffix.lower() in NAMING and file.stat().st_size < MOST_TEXT:
+        for name in re.split(
+            r"[\s'\"=:,\[\]{}]+", file.read_text(encoding="utf-8", errors="replace")
+        ):
+            if name:
+                found = _read_with(file.parent / name, found)
+    return found
+
+
+def check_picture(option: str, name: str | Path | None, read: Iterable[Path] = ()) -> Path | None:
+    """As ``check_file``, for a picture that Matplotlib draws. MissingPackage without it."""
+    file = check_file(option, name, read)
+    if file is not None and file.suffix and file.suffix.lower() not in PICTURES:
+        raise InputError(f"{option} {name}: expected a file in {', '.join(PICTURES)}")
+    if file is not None:
+        require("viewer", "pictures need")
     return file
 
 

@@ -5,10 +5,11 @@ import math
 import re
 
 from dynastar.config import nearest
+from dynastar.errors import InputError
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:  # neither is imported for --help
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
     from pathlib import Path
     from typing import NoReturn
 
@@ -112,3 +113,12 @@ def port(text: str) -> int:
     if value > 65535:
         raise argparse.ArgumentTypeError(f"{text!r} is no port: expected 0 to 65535")
     return value
+
+
+def refuse_unheard(
+    arguments: argparse.Namespace, defaults: "Mapping[str, object]", why: str
+) -> None:
+    """Raises InputError for an option that was given though nothing would come of it."""
+    for name, default in defaults.items():
+        if getattr(arguments, name) != default:
+            raise InputError(f"--{name} {why}")

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from dynastar import io
 from dynastar.cli.arguments import add_json
-from dynastar.cli.outputs import check_file
+from dynastar.cli.outputs import check_picture
 from dynastar.cli.parsing import distance, number, path
 from dynastar.cli.show import as_json, as_table
 from dynastar.config import choose
@@ -76,7 +76,7 @@ def execute(arguments: argparse.Namespace) -> int:
         "tolerance": arguments.tolerance,
         "unknown": arguments.unknown,
     }
-    picture = check_file("--out", arguments.out)
+    picture = check_picture("--out", arguments.out, [arguments.map])
     prepare()
     planning.plan(grid, start, goal, **settings)  # loads
     plan = planning.plan(grid, start, goal, **settings)

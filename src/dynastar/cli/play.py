@@ -56,7 +56,7 @@ def execute(arguments: argparse.Namespace) -> int:
     scenes = {name: file for name, file in example_scenarios().items() if name in SCENES}
     scenes = {name: scenes[name] for name in SCENES}
     given = arguments.scenario
-    named = given.suffix == "" and not given.exists()
+    named = given.suffix == "" and not given.is_file()
     scenario = io.load_scenario(choose(str(given), scenes, "scene") if named else given)
     require("play", "the playground needs")
     prepare()

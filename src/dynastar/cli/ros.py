@@ -41,7 +41,8 @@ def execute(arguments: argparse.Namespace) -> int:
     scenario = None if arguments.scenario is None else load_named(arguments.scenario)
     require("ros", "ROS 2 nodes need")
     prepare()
-    from dynastar.ros.main import navigate, parameters_of
+    from dynastar.ros.main import navigate
+    from dynastar.ros.settings import parameters_of
 
     given = [] if scenario is None else parameters_of(scenario)
     return navigate([*given, *arguments.ros_args])
@@ -49,5 +50,5 @@ def execute(arguments: argparse.Namespace) -> int:
 
 def load_named(given: Path) -> Scenario:
     """The scenario of a file, or of an example's name such as ``office``."""
-    named = given.suffix == "" and not given.exists()
+    named = given.suffix == "" and not given.is_file()
     return io.load_scenario(choose(str(given), example_scenarios(), "scenario") if named else given)

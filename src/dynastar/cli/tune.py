@@ -10,7 +10,7 @@ from typing import Any
 from dynastar import io
 from dynastar.cli.arguments import add_robot
 from dynastar.cli.outputs import check_file, make_folder
-from dynastar.cli.parsing import count, number, path, seed
+from dynastar.cli.parsing import count, number, path, refuse_unheard, seed
 from dynastar.errors import InputError, ScenarioError
 from dynastar.extras import require
 
@@ -24,7 +24,7 @@ examples:
   dynastar tune --hours 0.5
   dynastar tune --robot my_robot.toml --hours 2 --out out/tune
   dynastar tune --suite random,people,barn --data data --dask tcp://host:8786
-  dynastar tune --bag drive.mcap --out my_robot.toml
+  dynastar tune --bag drive.mcap --robot my_robot.toml --out measured.toml
 
 Every setting drives the same worlds; poor ones are stopped early. The best one is compared with the
 default in other worlds, of report seeds. Writes tuned.toml, report.html and state.json into PATH. A search
@@ -33,31 +33,51 @@ that was stopped goes on when the command is given again. The robot's file has t
 own. The bounds of the no-contact guarantee are never changed.
 
 --bag reads scans, odometry and commands of a drive, and writes latency, gains, accelerations, dead band,
-range noise and the robot's own parts in view, each with its evidence, into the file PATH."""
+range noise and the robot's own parts in view, each with its evidence, into the new file PATH."""
 
 FEWEST_HOURS = 0.001
 TOPICS = ("scan", "odom", "cmd_vel")
+SEARCHING: dict[str, Any] = {  # options of a search, with their defaults
+    "suite": "random,people",
+    "data": None,
+    "hours": 2.0,
+    "settings": None,
+    "worlds": 20,
+    "seed": 0,
+    "workers": None,
+    "dask": None,
+}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the command."""
     add_robot(parser)
     parser.add_argument(
-        "--suite", default="random,people", metavar="NAMES", help="default random,people"
+        "--suite", default=SEARCHING["suite"], metavar="NAMES", help="default random,people"
     )
     parser.add_argument(
         "--data", type=path, metavar="DIR", help="of the suites (default $DYNASTAR_DATA)"
     )
     parser.add_argument(
-        "--hours", type=number, default=2.0, metavar="H", help="time in all (default 2)"
+        "--hours",
+        type=number,
+        default=SEARCHING["hours"],
+        metavar="H",
+        help="time in all (default 2)",
     )
     parser.add_argument(
         "--settings", type=count, metavar="N", help="stop the search after N settings"
     )
     parser.add_argument(
-        "--worlds", type=count, default=20, metavar="N", help="of each suite (default 20)"
+        "--worlds",
+        type=count,
+        default=SEARCHING["worlds"],
+        metavar="N",
+        help="of each suite (default 20)",
     )
-    parser.add_argument("--seed", type=seed, default=0, metavar="N", help="default 0, below 10000")
+    parser.add_argument(
+        "--seed", type=seed, default=SEARCHING["seed"], metavar="N", help="default 0, below 10000"
+    )
     parser.add_argument("--workers", type=count, metavar="N", help="processes (default: all cores)")
     parser.add_argument("--dask", metavar="ADDRESS", help="run on this Dask cluster instead")
     parser.add_argument(
@@ -89,16 +109,24 @@ def _measure(arguments: argparse.Namespace) -> int:
     require("bags", "recordings need")
     from dynastar.cli.replay import topic_table
     from dynastar.cli.robots import named_robot
+    from dynastar.navigator import NavigatorConfig
+    from dynastar.navigator.config import changes
     from dynastar.tune.measured import measured, robot_toml
     from dynastar.tune.recording import read_drive
 
+    refuse_unheard(arguments, SEARCHING, "goes with a search, not with --bag")
     file = check_file("--out", arguments.out or Path("robot.toml"))
     assert file is not None
-    robot = None if arguments.robot is None else named_robot(arguments.robot)[0]
+    if file.exists():  # perhaps written by hand
+        raise InputError(f"--out {file}: is there already; name a new file")
+    robot, told = None, {}
+    if arguments.robot is not None:
+        robot, config = named_robot(arguments.robot)
+        told = changes(NavigatorConfig(), config)
     found = measured(read_drive(arguments.bag, topic_table(arguments.topic, TOPICS)), robot)
     print(found.words())
     with io.written_aside(file) as aside:
-        aside.write_text(robot_toml(found, Path(arguments.bag).name), encoding="utf-8")
+        aside.write_text(robot_toml(found, Path(arguments.bag).name, told), encoding="utf-8")
         try:
             io.load_robot(aside)
         except ScenarioError as error:
@@ -117,6 +145,7 @@ def _search(arguments: argparse.Namespace) -> int:
     from dynastar.tune.search import Plan
     from dynastar.tune.tuning import Task, tune
 
+    refuse_unheard(arguments, {"topic": []}, "goes with --bag")
     if not arguments.hours >= FEWEST_HOURS:
         raise InputError(f"--hours {arguments.hours:g}: expected {FEWEST_HOURS:g} or more")
     robot, config = None, NavigatorConfig()

@@ -51,7 +51,7 @@ def execute(arguments: argparse.Namespace) -> int:
     out = arguments.out or files[0].with_name(
         "report.html" if files[0].name == EPISODE else f"{files[0].stem}.html"
     )
-    check_file("--out", out)
+    check_file("--out", out, files)
     write_report([io.load_episode(file) for file in files], out)
     print(out)
     if arguments.open and not webbrowser.open(out.absolute().as_uri()):

@@ -2,6 +2,7 @@
 
 import heapq
 import shutil
+import time
 import warnings
 from collections.abc import Iterator
 from functools import cache
@@ -84,13 +85,13 @@ class BagWriter:
         shutil.copyfile(LAYOUT, written / LAYOUT.name)
         self._connections: dict[str, Any] = {}
         self._last = -1
-        self._stored = -STORED_EVERY
+        self._stored = -STORED_EVERY, time.monotonic_ns()  # by stamps, and by the steady clock
 
-    def write(self, topic: str, kind: str, time: float, message: Any) -> None:
+    def write(self, topic: str, kind: str, at: float, message: Any) -> None:
         """Writes a message that ``make`` has made, at a time in seconds."""
-        self.write_cdr(topic, kind, time, _types().serialize_cdr(message, kind))
+        self.write_cdr(topic, kind, at, _types().serialize_cdr(message, kind))
 
-    def write_cdr(self, topic: str, kind: str, time: float, data: bytes | memoryview) -> None:
+    def write_cdr(self, topic: str, kind: str, at: float, data: bytes | memoryview) -> None:
         """Writes a message that is serialized already, as rclpy does it.
 
         Times are whole microseconds; within one, nanoseconds keep the order of writing.
@@ -99,14 +100,15 @@ class BagWriter:
         if connection is None:
             connection = self._writer.add_connection(topic, kind, typestore=_types())
             self._connections[topic] = connection
-        self._last = max(1000 * round(1e6 * time), self._last + 1)
+        self._last = max(1000 * round(1e6 * at), self._last + 1)
         self._writer.write(connection, self._last, data)
         storage: Any = self._writer.storage
-        late = self._last - self._stored > STORED_EVERY
+        now = self._last, time.monotonic_ns()  # stamps may stand still
+        late = max(now[0] - self._stored[0], now[1] - self._stored[1]) > STORED_EVERY
         if self._aside is None and late and storage.chunk.bio.tell():
             storage.close_chunk()
             storage.bio.flush()
-            self._stored = self._last
+            self._stored = now
 
     def close(self) -> None:
         """Ends the recording and gives it its name."""
@@ -155,8 +157,8 @@ class _Whole:
     def messages(self, topics: set[str]) -> Iterator[tuple[int, str, Any]]:
         """Time (ns), topic and message, by time."""
         wanted = [found for found in self._reader.connections if found.topic in topics]
-        for connection, time, data in self._reader.messages(connections=wanted):
-            yield time, connection.topic, self._reader.deserialize(data, connection.msgtype)
+        for connection, at, data in self._reader.messages(connections=wanted):
+            yield at, connection.topic, self._reader.deserialize(data, connection.msgtype)
 
     def close(self) -> None:
         self._reader.close()
@@ -228,8 +230,8 @@ class BagReader:
         """Messages of topics by time, those of one time as they were written."""
         parts = (part.messages(topics) for part in self._parts)
         try:
-            for time, topic, message in heapq.merge(*parts, key=itemgetter(0)):
-                yield Recorded(topic, 1e-6 * (time // 1000), message)
+            for at, topic, message in heapq.merge(*parts, key=itemgetter(0)):
+                yield Recorded(topic, 1e-6 * (at // 1000), message)
         except Exception as error:  # as above
             raise DataError(f"{self.path}: damaged: {error!s:.200}") from None
 

@@ -6,6 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import Any
 
+from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
@@ -16,6 +17,7 @@ from dynastar.ros.middleware import make, message_class
 from dynastar.ros.outgoing import Messages
 from dynastar.ros.parameters import Parameters
 
+FAREWELL = 0.5  # s to hand the last message to the middleware
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 SENSORS = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 FRAMES = QoSProfile(depth=100)
@@ -115,5 +117,6 @@ class DrivingNode(Node, ABC):  # type: ignore[misc]
         return bool(self._outlets[topic].get_subscription_count() > 0)
 
     def stop(self) -> None:
-        """The last word is zero."""
+        """Commands zero, and waits until the middleware has the message."""
         self._send(Twist(0.0, 0.0), self._clock_time())
+        self._outlets["cmd_vel"].wait_for_all_acked(Duration(seconds=FAREWELL))

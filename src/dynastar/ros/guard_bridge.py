@@ -58,7 +58,8 @@ class GuardBridge(Intake):
         """The command to drive at ``now`` (s); braking, with the reason, where data are missing or late."""
         scans = self._take_new_scans()
         state, trouble = self._state(now)
-        wrong = lateness("command", self._commanded, now, self.own.command_age)
+        wrong = "no map has come yet" if self.own.use_map and self.grid is None else ""
+        wrong = wrong or lateness("command", self._commanded, now, self.own.command_age)
         if not all(map(math.isfinite, self._command)):
             wrong = wrong or f"the command is {self._command}: expected finite speeds"
         guarded = self.guard.filter(state, scans, None if wrong else self._command)

@@ -4,7 +4,9 @@ import math
 import time
 from typing import Any
 
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
+from rclpy.parameter import Parameter
 
 from dynastar.config import checked
 from dynastar.ros.driving_node import DrivingNode
@@ -46,6 +48,7 @@ class GuardNode(DrivingNode):
             topic: kind for topic, kind in SENSED.items() if topic not in MAPS or guard.use_map
         }
         self._subscribe({**topics, "cmd_vel_in": self._twist_kind})
+        self.add_on_set_parameters_callback(self._refuse)
         # The steady clock goes on when a simulator's clock does not.
         self.create_timer(config.period, self._tick, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.get_logger().info(f"{settings.robot}: guards cmd_vel_in")
@@ -53,6 +56,12 @@ class GuardNode(DrivingNode):
     def read_parameters(self) -> Parameters:
         """Those of the navigator's node but for the recording, every 20 ms."""
         return Parameters(self, left_out=("bag",), period=PERIOD)
+
+    def _refuse(self, changes: list[Parameter]) -> SetParametersResult:
+        """Refuses to change parameters while running."""
+        fixed = [change.name for change in changes if change.name != "use_sim_time"]
+        reason = f"{fixed[0]} is read at the start only: start the node anew" if fixed else ""
+        return SetParametersResult(successful=not fixed, reason=reason)
 
     def _take(self, topic: str, message: Any) -> None:
         now = self._time()

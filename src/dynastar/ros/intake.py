@@ -18,6 +18,7 @@ from dynastar.scan import LaserScan
 
 JUMP = 0.5  # s by which a clock that goes back, or a stamp ahead of it, is another time
 NOWHERE = Pose2D(math.nan, math.nan, math.nan)
+LAYERS = "map", "keepout_filter_mask", "speed_filter_mask"
 SENSED = {
     "map": "nav_msgs/msg/OccupancyGrid",
     "keepout_filter_mask": "nav_msgs/msg/OccupancyGrid",
@@ -45,14 +46,14 @@ class Intake(ABC):
         self._layers: dict[str, OccupancyGrid] = {}  # the newest map and masks
         self._scan: LaserScan | None = None
         self._new_scans: list[LaserScan] = []  # since the last tick
-        self._now = -math.inf
+        self._now = self._at = -math.inf  # the clock, and the time of the last state
 
     # -- what comes in ----------------------------------------------------------------------------
 
     def take(self, topic: str, message: Any) -> str:
         """Use a message of a topic in SENSED. Returns what is wrong with it, or ""."""
         try:
-            if topic == "map" or topic.endswith("_filter_mask"):
+            if topic in LAYERS:
                 self._use_layer(topic, grid_of(message, self.settings.global_frame))
             elif topic == "scan":
                 self._take_scan(message)
@@ -127,6 +128,7 @@ class Intake(ABC):
         self.transforms.clear()
         self._scan, self._new_scans, self.refused = None, [], reason
         self._refusals.clear()
+        self._at = -math.inf
 
     # -- what is known now ------------------------------------------------------------------------
 
@@ -143,11 +145,15 @@ class Intake(ABC):
     def _state(self, now: float) -> tuple[RobotState, str]:
         """The state now, and what is wrong with odometry, scan or pose: then a state that stops."""
         scan = self._scan
-        trouble = self.fault or self._late("odometry", "odom", self.localization.stamp, now)
+        trouble = self.fault or self._layer_refused()
+        trouble = trouble or self._late("odometry", "odom", self.localization.stamp, now)
         scanned = -math.inf if scan is None else scan.stamp
         trouble = trouble or self._late("scan", "scan", scanned, now)
         trouble = trouble or self._follow_tf(now)
-        at = now if scan is None or scan.stamp - now > JUMP else max(now, scan.stamp)
+        newest = [now, self._at] if now > self._at - JUMP else [now]
+        if scan is not None and scan.stamp - now <= JUMP:
+            newest.append(scan.stamp)
+        at = self._at = max(newest)  # a lidar's clock may be ahead, and the next one's is not
         state = self.localization.at(at)
         if state is None:
             unknown = "the pose in the map is not known yet"
@@ -156,6 +162,11 @@ class Intake(ABC):
             twist = Twist(0.0, 0.0) if state is None else state.twist
             return RobotState(at, NOWHERE, twist), trouble
         return state, ""
+
+    def _layer_refused(self) -> str:
+        """Why a map or a mask was refused of which there is none in use, or ""."""
+        found = (topic for topic in LAYERS if topic in self._refusals and topic not in self._layers)
+        return next((f"{topic}: {self._refusals[topic]}" for topic in found), "")
 
     def _late(self, what: str, topic: str, stamp: float, now: float) -> str:
         """Describe what is wrong with the stamp of data, or why newer data were refused, or ""."""
@@ -173,8 +184,11 @@ class Intake(ABC):
             return str(error)
         if found is None:
             return f"tf does not say where '{frame:.80}' is in '{parent}'"
-        if frame != parent and self.transforms.age(frame, now) > self.settings.pose_age:
-            return f"the transform of '{frame}' is {self.transforms.age(frame, now):.2f} s old"
+        ages = self.transforms.ages(parent, frame, now)
+        if ages and max(ages) > self.settings.pose_age:
+            return f"the transform of '{frame}' is {max(ages):.2f} s old"
+        if ages and -min(ages) > self.settings.pose_age:
+            return f"the transform of '{frame}' is stamped {-min(ages):.2f} s ahead of the clock"
         self.localization.map_to_odom = found.pose
         return ""
 

@@ -11,6 +11,9 @@ from dynastar.robot import arc
 
 PoseSource = Literal["odom", "amcl", "tf"]
 KEPT = 5.0  # s of odometry
+SET_BACK = (
+    0.5  # s by which a stamp has to be older than the one before for a clock that was set back
+)
 LONGEST = 0.5  # s by which a pose is carried on at its twist
 
 
@@ -21,6 +24,7 @@ class Localization:
         self.source = source
         self.map_to_odom = Pose2D(0.0, 0.0, 0.0) if source == "odom" else None
         self._odometry: deque[RobotState] = deque()
+        self._pose: tuple[float, Pose2D] | None = None  # in the map, before the first odometry
 
     @property
     def stamp(self) -> float:
@@ -28,21 +32,30 @@ class Localization:
         return self._odometry[-1].stamp if self._odometry else -math.inf
 
     def reset(self) -> None:
-        """Drops all odometry: time has jumped."""
+        """Drops all that has a stamp: time has jumped."""
         self._odometry.clear()
+        self._pose = None
 
     def add_odometry(self, stamp: float, pose: Pose2D, twist: Twist) -> None:
-        """Takes in odometry; what is older than the newest is left out. InputError if not finite."""
+        """Takes in odometry. InputError if not finite.
+
+        What is a little older than the newest is left out; by more, the clock was set back.
+        """
         if not all(map(math.isfinite, (stamp, *pose, *twist))):
             raise InputError("the odometry is not finite")
+        if stamp < self.stamp - SET_BACK:
+            self._odometry.clear()
         if stamp <= self.stamp:
             return
         self._odometry.append(RobotState(stamp, pose, twist))
         while self._odometry[0].stamp < stamp - KEPT:
             self._odometry.popleft()
+        if self._pose is not None:
+            self.add_pose(*self._pose)
 
     def add_pose(self, stamp: float, pose: Pose2D) -> None:
-        """Takes in the pose in the map at a time, as /amcl_pose has it."""
+        """Takes in the pose in the map at a time, as /amcl_pose has it; kept until there is odometry."""
+        self._pose = None if self._odometry else (stamp, pose)
         if self._odometry:
             nearest = min(self._odometry, key=lambda state: abs(state.stamp - stamp))
             self.map_to_odom = compose(pose, inverse(nearest.pose))

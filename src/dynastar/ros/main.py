@@ -5,14 +5,13 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import rclpy
-from rclpy.duration import Duration
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
+from dynastar.errors import ConfigError
 from dynastar.simulation import warm_up
-
-FAREWELL = 0.5  # s to hand the last message to the middleware
 
 
 def navigate(arguments: Sequence[str]) -> int:
@@ -39,22 +38,17 @@ def simulate(scenario: Any, arguments: Sequence[str]) -> int:
     return run(lambda: SimulatorNode(scenario), arguments)
 
 
-def parameters_of(scenario: Any) -> list[str]:
-    """ROS arguments that give the navigator's node a scenario's robot and errors."""
-    from dynastar.ros.sim_node import as_parameters
-
-    words = ["--ros-args"]
-    for name, value in as_parameters(scenario).items():
-        words += ["-p", f"{name}:={value}"]
-    return words
-
-
 def run(make: Callable[[], Node], arguments: Sequence[str]) -> int:
     """Spins a node until a signal ends it; 0."""
     stopping: list[int] = []
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda number, frame: stopping.append(number))
-    rclpy.init(args=list(arguments), signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        rclpy.init(args=list(arguments), signal_handler_options=SignalHandlerOptions.NO)
+    except RCLError as error:
+        raise ConfigError(
+            f"ROS cannot read its arguments: {' '.join(str(error).split())}"
+        ) from None
     node = None
     executor = SingleThreadedExecutor()
     try:
@@ -65,9 +59,6 @@ def run(make: Callable[[], Node], arguments: Sequence[str]) -> int:
     finally:
         if node is not None and hasattr(node, "stop"):
             node.stop()
-            for publisher in node.publishers:
-                if publisher.topic_name.endswith("cmd_vel"):
-                    publisher.wait_for_all_acked(Duration(seconds=FAREWELL))
         executor.shutdown()
         if node is not None:
             node.destroy_node()

@@ -105,9 +105,7 @@ class NavigatorNode(DrivingNode):
     def _note_request(self, words: str) -> None:
         if self._bag is not None:
             message = make("std_msgs/msg/String", data=words)
-            name = self.resolve_topic_name(REQUESTS)
-            data = serialize_message(message)
-            self._bag.write_cdr(name, "std_msgs/msg/String", self._clock_time(), data)
+            self._write(REQUESTS, "std_msgs/msg/String", message, self._clock_time())
 
     # -- the loop ---------------------------------------------------------------------------------
 
@@ -152,11 +150,9 @@ class NavigatorNode(DrivingNode):
         self.get_logger().info(f"{'goal' if len(goals) == 1 else 'goals'} {words}")
 
     def stop(self) -> None:
-        """Ends the recording; the last word is zero."""
-        if self._bag is not None:
-            self._bag.close()
-            self._bag = None
+        """Stops the robot, and ends the recording."""
         super().stop()
+        self._end_recording()
 
     # -- what goes out ----------------------------------------------------------------------------
 
@@ -164,16 +160,33 @@ class NavigatorNode(DrivingNode):
         self._emit(topic, message, self._ticked)
 
     def _emit(self, topic: str, message: Any, now: float) -> None:
+        super()._emit(topic, message, now)  # first: a command does not wait for the disk
         self._record(topic, message, now)
-        super()._emit(topic, message, now)
 
     def _wanted(self, topic: str) -> bool:
         return self._bag is not None or super()._wanted(topic)
 
     def _record(self, topic: str, message: Any, now: float) -> None:
         if self._bag is not None:
+            self._write(topic, self._kinds[topic], message, now)
+
+    def _write(self, topic: str, kind: str, message: Any, now: float) -> None:
+        """Writes to the recording; one that cannot be written ends, and the robot drives on."""
+        assert self._bag is not None
+        try:
             name = self.resolve_topic_name(topic)
-            self._bag.write_cdr(name, self._kinds[topic], now, serialize_message(message))
+            self._bag.write_cdr(name, kind, now, serialize_message(message))
+        except OSError as error:
+            self.get_logger().error(f"the recording ends here: {error}")
+            self._end_recording()
+
+    def _end_recording(self) -> None:
+        bag, self._bag = self._bag, None
+        if bag is not None:
+            try:
+                bag.close()
+            except OSError as error:
+                self.get_logger().error(f"the recording was not closed: {error}")
 
     # -- services and parameters ------------------------------------------------------------------
 

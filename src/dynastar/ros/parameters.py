@@ -4,9 +4,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rclpy.exceptions import ParameterException
 from rclpy.node import Node
 
 from dynastar.config import Field, checked, choose
+from dynastar.errors import ConfigError
 from dynastar.navigator import NavigatorConfig, configured
 from dynastar.robot import ROBOTS, Limits
 from dynastar.ros.settings import NodeSettings, fields_of, flat, nested, robot_of
@@ -69,7 +71,10 @@ def declare(node: Node, name: str, field: Field, default: Any) -> Any:
                 )
             ]
     value = list(default) or None if isinstance(default, tuple) else default
-    node.declare_parameter(name, value, described)
+    try:
+        node.declare_parameter(name, value, described)
+    except ParameterException as error:
+        raise ConfigError(f"the parameter '{name}': {' '.join(str(error).split())}") from None
     found = node.get_parameter(name).value
     if isinstance(default, tuple):
         return tuple(found or ())

@@ -28,8 +28,8 @@ COMMANDS = "cmd_vel"
 NOTHING = Twist(math.nan, math.nan)
 # Settings that tell of the robot and the mission, which another preset leaves as they are.
 OF_THE_ROBOT = (
-    "period", "latency", "range_error", "pose_error", "heading_error", "goal_tolerance",
-    "heading_tolerance", "unknown",
+    "period", "latency", "range_error", "pose_error", "heading_error", "drive_error", "scan_age",
+    "hidden_speed", "unseen_speed", "goal_tolerance", "heading_tolerance", "unknown",
 )  # fmt: skip
 # Options of `dynastar replay` for what a recording may lack.
 INSTEAD = {"map": "--map MAP, or ", "goal_pose": "--goal X Y [HEADING], or "}
@@ -110,7 +110,9 @@ class Overrides(NamedTuple):
         if self.pose_source is not None:
             own = own._replace(pose_source=self.pose_source)
         if self.preset is not None:
-            config = configured(self.preset, {name: getattr(config, name) for name in OF_THE_ROBOT})
+            kept: dict[str, Any] = {name: getattr(config, name) for name in OF_THE_ROBOT}
+            kept["local_map"] = {"narrowest": config.local_map.narrowest}
+            config = configured(self.preset, kept)
         config = changed(config, self.settings)
         return Bridge(own, self.robot or recorded.robot, config)
 

@@ -1,5 +1,6 @@
 """What a node is told besides the navigator's settings, and settings by dotted name."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Annotated, Any, Literal, NamedTuple, get_args, get_origin, get_type_hints
@@ -7,9 +8,11 @@ from typing import Annotated, Any, Literal, NamedTuple, get_args, get_origin, ge
 from dynastar.config import Field, checked
 from dynastar.errors import ConfigError
 from dynastar.footprint import Footprint
-from dynastar.navigator import Preset
+from dynastar.navigator import Preset, configured
 from dynastar.robot import ROBOTS, Lidar, Limits, Robot
 from dynastar.ros.localization import PoseSource
+from dynastar.simulation import Scenario
+from dynastar.simulation.run import effective_config
 
 AGE = Field("largest age of scan and odometry before the robot brakes", "s", 0.05, 2.0)
 
@@ -112,6 +115,40 @@ def robot_of(base: Robot, limits: Limits, own: NodeSettings) -> Robot:
     if own.laser_nothing:
         lidar = lidar._replace(nothing=own.laser_nothing)
     return replace(base, limits=limits, footprint=footprint, lidar=lidar)
+
+
+def parameters_of(scenario: Scenario) -> list[str]:
+    """ROS arguments that give the navigator's node a scenario's robot, settings and errors."""
+    words = ["--ros-args"]
+    for name, value in _parameters(scenario).items():
+        words += ["-p", f"{name}:={_yaml(value)}"]
+    return words
+
+
+def _yaml(value: Any) -> str:
+    """A value as YAML has it."""
+    if isinstance(value, list):
+        return f"[{', '.join(map(_yaml, value))}]"
+    special = isinstance(value, float) and not math.isfinite(value)
+    return f"{value}".replace("nan", ".nan").replace("inf", ".inf") if special else f"{value}"
+
+
+def _parameters(scenario: Scenario) -> dict[str, Any]:
+    """The node's parameters that differ from its defaults, and all that tells of the robot."""
+    robot, preset = scenario.robot, flat(configured(scenario.preset))
+    found: dict[str, Any] = {"robot": robot.name if robot.name in ROBOTS else next(iter(ROBOTS))}
+    found["preset"] = scenario.preset
+    config = flat(effective_config(scenario))
+    found |= {name: value for name, value in config.items() if value != preset[name]}
+    found |= {f"limits.{name}": value for name, value in robot.limits._asdict().items()}
+    if robot.footprint.is_disc:
+        found["radius"] = robot.footprint.circumscribed
+    else:
+        found["polygon"] = [float(value) for value in robot.footprint.vertices.reshape(-1)]
+    found["laser_pose"] = [float(value) for value in robot.lidar.mount]
+    if robot.lidar.nothing:
+        found["laser_nothing"] = [float(value) for value in robot.lidar.nothing]
+    return found
 
 
 def robot_table(robot: Robot) -> dict[str, Any]:

@@ -4,7 +4,6 @@ import math
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
 from geometry_msgs.msg import Twist as TwistMessage
 from geometry_msgs.msg import TwistStamped
 from nav_msgs.msg import OccupancyGrid as GridMessage
@@ -105,16 +104,3 @@ class SimulatorNode(Node):  # type: ignore[misc]
         mount = ("base_link", "laser", self.scenario.robot.lidar.mount)
         self._fixed.publish(self._out.transforms([mount], self._stamp()))
         return self.create_publisher(kind, "/tf", FRAMES)
-
-
-def as_parameters(scenario: Scenario) -> dict[str, Any]:
-    """The parameters of a navigator node that drives this scenario's robot with its errors."""
-    from dynastar.simulation.run import effective_config
-
-    config = effective_config(scenario)
-    names = "latency", "range_error", "pose_error", "heading_error", "goal_tolerance", "unknown"
-    found = {name: getattr(config, name) for name in names}
-    footprint = scenario.robot.footprint
-    if not footprint.is_disc:
-        found["polygon"] = np.asarray(footprint.vertices).reshape(-1).tolist()
-    return {"robot": scenario.robot.name, "period": 0.05, **found}

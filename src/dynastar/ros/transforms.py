@@ -11,6 +11,9 @@ from dynastar.geometry import Pose2D
 
 MOST_TILT = 5.0  # degrees between two planes, or of a pose, that count as level
 LONGEST = 50  # frames in a chain
+SET_BACK = (
+    0.5  # s by which a stamp has to be older than the one before for a clock that was set back
+)
 
 Matrix = npt.NDArray[np.float64]
 
@@ -35,18 +38,36 @@ class Transforms:
         }
 
     def add(self, message: Any, static: bool) -> None:
-        """Takes in a tf2_msgs/TFMessage; InputError where a transform is not finite."""
+        """Takes in a tf2_msgs/TFMessage; InputError where a transform is not finite, after all others.
+
+        One that is a little older than the one that is known is left out; by more, the clock was set back.
+        """
+        wrong = None
         for one in message.transforms:
             parent, child = (name.lstrip("/") for name in (one.header.frame_id, one.child_frame_id))
             stamp = float(one.header.stamp.sec) + 1e-9 * float(one.header.stamp.nanosec)
             known = self._parents.get(child)
-            if known is None or static or stamp >= known[2] or known[0] != parent:
-                stamp = math.inf if static else stamp
-                self._parents[child] = (parent, _matrix(one.transform, child), stamp)
+            late = known is not None and known[0] == parent
+            if late and known is not None:
+                late = known[2] == math.inf or -SET_BACK < stamp - known[2] < 0.0
+            try:
+                matrix = _matrix(one.transform, child)
+            except InputError as error:
+                wrong = error
+                continue
+            if static or not late:
+                self._parents[child] = (parent, matrix, math.inf if static else stamp)
+        if wrong is not None:
+            raise wrong
 
-    def age(self, child: str, now: float) -> float:
-        """Seconds since the stamp of a frame's transform to its parent; -inf if it is static."""
-        return now - self._parents[child][2]
+    def ages(self, parent: str, child: str, now: float) -> list[float]:
+        """Seconds since the stamps of the transforms from a frame to one above it, but for static ones."""
+        frame = child
+        found: list[float] = []
+        while frame != parent and frame in self._parents and len(found) < LONGEST:
+            frame, _, stamp = self._parents[frame]
+            found.append(now - stamp)
+        return [age for age in found if math.isfinite(age)]
 
     def planar(self, parent: str, child: str) -> Mount | None:
         """Pose of a frame in another above it, None if they are not connected.

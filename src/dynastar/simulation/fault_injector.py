@@ -91,7 +91,7 @@ class FaultInjector:
     def _distorted(self, fault: Fault, state: RobotState, scan: LaserScan | None) -> Sensed:
         """The delivered state and scan with one fault applied."""
         kind, size = fault.kind, fault.size
-        held_state, held_scan = self._held.get(fault, (state, scan))
+        held_state, held_scan = self._held.setdefault(fault, (state, scan))
         if kind == "state_frozen":
             return held_state, scan
         if kind == "state_nan":

@@ -64,6 +64,8 @@ class Fault:
             raise ScenarioError(f"the fault {self.kind} has size {self.size}: expected a number")
         if self.kind in ("beams_missing", "side_missing") and not 0.0 <= self.size <= 1.0:
             raise ScenarioError(f"the fault {self.kind} has size {self.size}: expected 0 to 1")
+        if self.kind in ("scans_late", "commands_late") and self.size < 0.0:
+            raise ScenarioError(f"the fault {self.kind} has size {self.size}: expected 0 or more")
         needs = {"map_replaced": "grid", "obstacle_appears": "polygon", "kidnapped": "pose"}
         name = needs.get(self.kind, "")
         if name and getattr(self, name) is None:

@@ -198,8 +198,10 @@ class World:
     def step(self, command: Twist, duration: float) -> None:
         """Takes in ``command`` and lets ``duration`` seconds pass, or less where a contact ends it.
 
-        Raises InputError for a command that is not finite.
+        Raises InputError for a command that is not finite, and for a duration that is not positive.
         """
+        if not 0.0 < duration < math.inf:
+            raise InputError(f"the duration of a step is {duration}: expected seconds, more than 0")
         if not all(map(math.isfinite, command)):
             raise InputError(f"the command at {self.time:g} s is {command}: expected finite speeds")
         if self.contact:

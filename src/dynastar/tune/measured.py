@@ -29,6 +29,7 @@ Floats = npt.NDArray[np.float64]
 
 AXES = "v", "omega"
 UNKNOWN = "pioneer3dx"  # base of the file where the robot is not known
+MOST_ERROR = 0.5  # the largest drive_error that can be declared
 BODY = 0.1  # m beyond the footprint that a part of the robot may reach
 NEVER_TOLD = (
     "footprint, v_max and omega_max, constant errors of the ranges, pose_error and heading_error, where "
@@ -89,11 +90,12 @@ def measured(drive: Drive, robot: Robot | None = None) -> Measured:
     return Measured(estimates, tuple(own), words, robot)
 
 
-def robot_toml(found: Measured, source: str) -> str:
+def robot_toml(found: Measured, source: str, told: Mapping[str, Any] | None = None) -> str:
     """The robot as a file for ``--robot``, each value with its evidence as a comment.
 
     Of a range the end that is safe is written: the longest latency, the weakest braking. What the
-    recording does not tell is that of the robot it was given.
+    recording does not tell is that of the robot it was given, and of the navigator's settings ``told``
+    with it.
     """
     comments = {_place(name): one.words() for name, one in found.estimates.items()}
     comments["navigator.drive_error"] = "how much faster than told the drive is, from the gains"
@@ -107,12 +109,26 @@ def robot_toml(found: Measured, source: str) -> str:
     ]
     if found.robot is None:
         head.append(f"The base {UNKNOWN} is a guess, for the footprint: name your own.")
-    return toml_text(_without_none(_tables(found)), comments, head)
+    too_fast = [name for name in AXES if is_too_fast(found.estimates[f"gain_{name}"])]
+    head += [
+        f"The drive is more than {MOST_ERROR:.0%} too fast in {name}: drive_error cannot declare that, "
+        "so correct the drive's scale first."
+        for name in too_fast
+    ]
+    return toml_text(_without_none(_tables(found, told or {})), comments, head)
 
 
-def _tables(found: Measured) -> dict[str, Any]:
+def is_too_fast(gain: Estimate) -> bool:
+    """Whether a drive is faster than told by more than ``drive_error`` can declare."""
+    return gain.told and gain.high - 1.0 > MOST_ERROR
+
+
+def _tables(found: Measured, told: Mapping[str, Any]) -> dict[str, Any]:
     """The tables of the file, None for what is not known."""
-    names, robot = found.estimates, found.robot
+    names, robot, settings = found.estimates, found.robot, dict(told)
+    latency = settings.pop("latency", None)
+    if names["latency"].told:
+        latency = names["latency"].high
     limits = {
         "v_accel": names["v_accel"].value,
         "omega_accel": names["omega_accel"].value,
@@ -136,7 +152,7 @@ def _tables(found: Measured) -> dict[str, Any]:
         )
         sensor = robot.lidar._asdict() | sensor
     return {
-        **rounded({"latency": _end(names["latency"], "high")}),
+        **rounded({"latency": latency}),
         "robot": {"base": base, **footprint, "limits": limits},
         "sensor": sensor,
         "drive": rounded({f"gain_{name}": names[f"gain_{name}"].value for name in AXES}),
@@ -144,7 +160,7 @@ def _tables(found: Measured) -> dict[str, Any]:
             {f"gain_{name}": names[f"odometry_gain_{name}"].value for name in AXES}
         ),
         "lidar": {"posts": [rounded(vars(part)) for part in found.own] or None},
-        "navigator": rounded(navigator),
+        "navigator": settings | rounded(_without_none(navigator)),
     }
 
 
@@ -206,7 +222,7 @@ def _period(drive: Drive) -> Estimate:
 def _drive_error(*gains: Estimate) -> float | None:
     """How much more than told the drive does at most, as a fraction."""
     told = [one.high - 1.0 for one in gains if one.told]
-    return min(max(0.0, *told), 0.5) if len(told) == len(gains) else None
+    return min(max(0.0, *told), MOST_ERROR) if len(told) == len(gains) else None
 
 
 def _end(estimate: Estimate, end: str) -> float | None:

@@ -1,5 +1,6 @@
 """A recording as arrays: commands, odometry and scans by the time at which they were received."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.errors import DataError, DynastarError
+from dynastar.errors import DataError, DynastarError, InputError
 from dynastar.geometry import Pose2D
 from dynastar.robot import Robot
 from dynastar.ros.bag import BagReader
@@ -72,13 +73,19 @@ def _read(bag: BagReader, shorts: Mapping[str, str]) -> Drive:
         elif short == COMMANDS:
             found[short].append((time, twist_of(getattr(message, "twist", message))))
         elif short == "odom":
-            odometry = (*pose_of(message.pose.pose), *twist_of(message.twist.twist))
-            found[short].append((time, odometry))
+            try:
+                odometry = (*pose_of(message.pose.pose), *twist_of(message.twist.twist))
+            except InputError:  # as a robot's node does
+                continue
+            if all(map(math.isfinite, odometry)):
+                found[short].append((time, odometry))
         else:
-            found[short].append((time, scan_of(message, AT_ORIGIN)))
+            scan = scan_of(message, AT_ORIGIN)
+            if scan.fault() is None:
+                found[short].append((time, scan))
     for short in ("scan", "odom", COMMANDS):
         if len(found[short]) < 2:
-            raise DataError(f"{bag.path}: fewer than two messages of '{short}'")
+            raise DataError(f"{bag.path}: fewer than two messages of '{short}' that can be used")
     times, states = (np.array(part) for part in zip(*found["odom"], strict=True))
     apart = np.concatenate([[True], np.diff(times) > BURST])
     times, states = times[apart], states[apart]
