@@ -80,13 +80,14 @@ def failures(everything: Mapping[str, Any]) -> dict[str, dict[str, list[int]]]:
 VARIANTS = ("crowdnav", "crowdnav_variants", "crowdnav_orca")
 ATTENTION = ("people_late", "people_none", "crowd_late", "crowd_none")
 ALL = {part.name: part for part in parts()}
+REACTIVE = ("people_reactive",) if "people_reactive" in ALL else ()
 BLOCKS = (
     of_scoreboard("scoreboard", lambda of: scoreboard.scoreboard(of["suites"])),
     of_scoreboard("failures", lambda of: scoreboard.failures_table(failures(of))),
     of_scoreboard("limits", lambda of: scoreboard.limits_table(of["suites"])),
     of_scoreboard("controllers", scoreboard.controllers_table),
     of_scoreboard("pictures", lambda of: scoreboard.pictures(failures(of))),
-    Block(BENCHMARKS, "attention", ATTENTION, tables.attention_table),
+    Block(BENCHMARKS, "attention", (*ATTENTION, *REACTIVE), tables.attention_table),
     Block(BENCHMARKS, "quality", ("maps", MAPS_BESIDE), tables.quality_table),
     Block(BENCHMARKS, "crowdnav", ("crowdnav", "crowdnav_orca"), tables.crowdnav_table),
     Block(
@@ -102,6 +103,7 @@ BLOCKS = (
         tuple(dict.fromkeys(target.part for target in TARGETS)),
         lambda found: targets_table(found, ALL),
     ),
+    Block(BENCHMARKS, "causes", ("contact_causes",), tables.causes_table),
     Block(BENCHMARKS, "irsim", ("irsim",), lambda found: simulators.irsim(found["irsim"])),
     Block(
         BENCHMARKS,

@@ -7,6 +7,7 @@ from dynastar.bench.scoreboard import QUICK_COMPETITORS
 from dynastar.bench.selection import REPORT_SEEDS
 from dynastar.bench.suites.crowdnav import REPORT, SEEDS, VARIANTS
 from dynastar.errors import ConfigError
+from dynastar.simulation.crowd import jupedsim_installed
 
 DYNASTAR = ("-m", "dynastar")
 INDIFFERENT = (
@@ -65,12 +66,13 @@ def parts() -> list[Part]:
     """All parts, cheap ones first; those of controllers that are not installed are left out."""
     orca = SEEDS * (len(VARIANTS) - 1)
     indifferent = ("--missions", "160", "--attention", "none")
+    reactive = ("--missions", "300", "--select", "3::4")
     return [
         paper("presets", 1),
         paper("figures", 1),
-        bench("barn", 1),
+        bench("barn", 2),
         bench("movingai", 1),
-        bench("mrpb", 1),
+        bench("mrpb", 2),
         bench("crowdnav", 2),
         bench(
             "crowdnav_orca",
@@ -79,31 +81,33 @@ def parts() -> list[Part]:
             f"{orca + REPORT.start}:{orca + REPORT.stop}",
             suite="crowdnav",
         ),
-        bench("office", 2, "--missions", "40"),
-        bench("faults", 2),
-        bench("dynabarn", 2),
-        bench("dynabarn_slow", 2, "--select", "1000::2", suite="dynabarn"),
-        bench("irsim", 1),
-        bench("navground", 2),
+        bench("office", 3, "--missions", "40"),
+        bench("faults", 4),
+        bench("dynabarn", 4),
+        bench("dynabarn_slow", 4, "--select", "1000::2", suite="dynabarn"),
+        bench("irsim", 2),
+        bench("navground", 1),
         paper("table1", 2),
-        bench("crowd_late", 2, suite="crowd"),
-        bench("crowd_none", 2, "--attention", "none", suite="crowd"),
-        bench("people_late", 3, "--missions", "160", suite="people"),
-        bench(INDIFFERENT, 3, *indifferent, suite="people"),
+        bench("crowd_late", 4, suite="crowd"),
+        bench("crowd_none", 4, "--attention", "none", suite="crowd"),
+        bench("people_late", 7, "--missions", "160", suite="people"),
+        bench(INDIFFERENT, 6, *indifferent, suite="people"),
+        *([bench("people_reactive", 8, *reactive, suite="people")] if jupedsim_installed() else []),
         *(
-            bench(f"{INDIFFERENT}-{name}", 3, *indifferent, "--controller", name, suite="people")
+            bench(f"{INDIFFERENT}-{name}", 5, *indifferent, "--controller", name, suite="people")
             for name in QUICK_COMPETITORS
             if installed(name)
         ),
-        bench("crowdnav_variants", 5, "--select", variant_cases(), suite="crowdnav"),
-        bench("maps", 5),
-        bench(MAPS_BESIDE, 3, "--controller", "pure_pursuit", suite="maps"),
-        bench("random", 5, "--missions", "200"),
-        bench("physics", 6),
-        bench("robots", 8),
-        paper("clutter", 30),
+        bench("crowdnav_variants", 2, "--select", variant_cases(), suite="crowdnav"),
+        bench("maps", 8),
+        bench(MAPS_BESIDE, 7, "--controller", "pure_pursuit", suite="maps"),
+        bench("random", 8, "--missions", "200"),
+        bench("physics", 4),
+        bench("robots", 9),
+        Part("contact_causes", 4, ("benchmarks/contact_causes.py",)),
+        paper("clutter", 35),
         Part("scoreboard", 30, ("benchmarks/scoreboard.py",)),
-        paper("table3", 90),
-        paper("ladder", 50),
-        paper("ablation", 80, "--worlds", "80"),
+        paper("table3", 80),
+        paper("ladder", 45),
+        paper("ablation", 45, "--worlds", "50"),
     ]

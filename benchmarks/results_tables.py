@@ -5,10 +5,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from statistics import fmean
 from typing import Any
 
+from contact_causes import CAUSES
 from results_parts import INDIFFERENT, MAPS_BESIDE
-from results_targets import contacts_of, counted
-
-from dynastar.bench.statistics import wilson
+from results_targets import contacts_of, counted, with_interval
 
 Result = Mapping[str, Any]
 Found = Mapping[str, Any]  # the result of each part
@@ -73,7 +72,11 @@ def attention_table(found: Found) -> str:
             noticed = [str(of[key]) if attention == "late" else "" for key in ("bumps", "stops")]
             ratio = f"{of['time_ratio']:.2f}"
             lines.append((f"`{suite}`", f"`{attention}`", counted(of), *counts, *noticed, ratio))
-    titles = ["suite", "attention", "succeeded", "moving"]
+    if reactive := found.get("people_reactive"):
+        moving, resting = (str(reactive[f"contacts_{kind}"]) for kind in MOTIONS)
+        ratio = f"{reactive['time_ratio']:.2f}"
+        lines.append(("`people`", "they react", counted(reactive), moving, resting, "", "", ratio))
+    titles = ["suite", "attention", "succeeded (95 %)", "moving"]
     return table([*titles, "at rest", "bumps", "stops", "time ratio"], lines)
 
 
@@ -109,13 +112,13 @@ def crowdnav_table(found: Found) -> str:
         orca=line(f"ORCA, this suite, {cases}", orca),
         navigator=line(f"navigator, by lidar, {cases}", ours),
     )
-    low, high = (100.0 * end for end in ours["succeeded_interval"])
     head = table(("", "success", "collisions", "time, s"), ())
     return (
-        f"{head}\n{lines}\n\nThe navigator succeeds in {counted(ours)} ({low:.0f} to {high:.0f} %); "
+        f"{head}\n{lines}\n\nThe navigator succeeds in {counted(ours)}; "
         f"{contacts_of(ours) or 'no contact'}. It is nearer than 0.2 m to somebody for "
         f"{100.0 * ours['mean_within_0_2']:.1f} % of the time. These cases take {ours['cpu_s']:.0f} s "
-        "of CPU time."
+        "of CPU time. There were "
+        f"{sum(row['circles'] for row in ours['rows'])} turns by more than 270 degrees."
     )
 
 
@@ -133,12 +136,13 @@ def variants_table(found: Found) -> str:
         lines.append(
             (
                 f"`{name}`{VARIANTS[name]}",
-                f"{outcomes.count('arrived') / len(first):.2f}",
+                with_interval(outcomes.count("arrived"), len(first)),
                 *map(str, (moving, resting, outcomes.count("timeout"))),
                 f"{fmean(times):.1f}" if times else "",
+                str(sum(row["circles"] for row in first)),
             )
         )
-    head = ("variant", "success", "moving", "at rest", "timeouts", "time, s")
+    head = ("variant", "crossed (95 %)", "moving", "at rest", "timeouts", "time, s", "circles")
     return table(head, lines)
 
 
@@ -146,13 +150,19 @@ def slow_table(found: Found) -> str:
     """DynaBARN at 0.5 m/s: published shares of success, and the navigator's."""
     of = found["dynabarn_slow"]
     groups = [of["groups"][f"{name} 0.5 m/s"] for name in ("easy", "medium", "hard")]
-    shares = " | ".join(f"{g['succeeded'] / g['missions']:.2f}" for g in [*groups, of])
+    shares = " | ".join(share_of(g) for g in [*groups, of])
     jumped = sum(bool(row.get("contact_after_jump")) for row in of["rows"])
     return (
         f"{SLOW}| navigator, {of['missions']} missions | {shares} |\n\n"
         f"The navigator had {contacts_of(of) or 'no contact'}; {jumped} of them with a disc that had just "
         "jumped."
     )
+
+
+def share_of(of: Result) -> str:
+    """The share of successes with its interval."""
+    low, high = of["succeeded_interval"]
+    return f"{of['succeeded'] / of['missions']:.2f} ({low:.2f}-{high:.2f})"
 
 
 def speed(found: Found) -> str:
@@ -164,14 +174,6 @@ def speed(found: Found) -> str:
         "core (driven seconds over seconds of CPU time, the loading of kernels included; target "
         f"15{'' if times >= 15.0 else ': missed'})."
     )
-
-
-def with_interval(succeeded: int, missions: int) -> str:
-    """Successes of missions with Wilson's interval in per cent."""
-    interval = wilson(succeeded, missions)
-    assert interval is not None
-    low, high = (round(100.0 * end) for end in interval)
-    return f"{succeeded} of {missions} ({low}-{high})"
 
 
 def others_in_words(others: Mapping[str, Result]) -> str:
@@ -243,3 +245,17 @@ def cells_of(markdown: str) -> dict[str, list[str]]:
     """The rows of a table of Markdown: cells by the first one."""
     rows = (re.split(r" *\| *", line.strip("| ")) for line in markdown.splitlines() if "|" in line)
     return {first: cells for first, *cells in rows}
+
+
+def causes_table(found: Found) -> str:
+    """How many contacts while moving had which cause, by part, with the missions."""
+    rows = found["contact_causes"]["rows"]
+    parts = list(dict.fromkeys(row["part"] for row in rows))
+    lines = []
+    for cause, words in CAUSES.items():
+        of = [row for row in rows if row["cause"] == cause]
+        cells = [
+            ", ".join(str(row["number"]) for row in of if row["part"] == part) for part in parts
+        ]
+        lines.append((words, str(len(of)), *cells))
+    return table(("who was hit", "all", *(f"`{part}`" for part in parts)), lines)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from PIL import Image
+from results_targets import with_interval
 
 from dynastar.bench.scoreboard_tables import MOST_GROUPS
 from dynastar.bench.selection import REPORT_SEEDS
@@ -112,12 +113,13 @@ def limits_table(suites: dict[str, Any]) -> str:
 
 
 def told(suite: dict[str, Any]) -> str:
-    """Arrivals, contacts while moving and at rest, and the suite's own figure."""
-    contacts = f"({suite['contacts_moving']}, {suite['contacts_resting']})"
+    """Arrivals with their interval, contacts while moving and at rest, and the suite's own figure."""
+    contacts = f"{suite['contacts_moving']}, {suite['contacts_resting']}"
     own = f"time ratio {suite['time_ratio']:.2f}" if suite["time_ratio"] else ""
     if suite["score"] is not None:
         own = f"score {suite['score']:.3f}"
-    return f"{suite['succeeded']} of {suite['missions']} {contacts}, {own}"
+    arrived = with_interval(suite["succeeded"], suite["missions"])
+    return f"{arrived}, {contacts}{f', {own}' if own else ''}"
 
 
 def controllers_table(found: dict[str, Any]) -> str:

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 from statistics import fmean
 from typing import Any
 
+from results_targets import with_interval
 from scoreboard_page import DOCS, draw
 
 SIZE, COLOURS = 900, 200
@@ -12,13 +13,13 @@ Row = dict[str, Any]
 
 
 def cell(rows: Sequence[Row]) -> str:
-    """Arrivals, contacts by the robot's motion, and the mean time of arrivals."""
+    """Arrivals with their interval, contacts by the robot's motion, and the mean time of arrivals."""
     times = [row["time"] for row in rows if row["outcome"] == "arrived"]
     moving, resting = (
         sum(row[f"contacts_{kind}"] for row in rows) for kind in ("moving", "resting")
     )
     mean = f", {fmean(times):.1f} s" if times else ""
-    return f"{len(times)} of {len(rows)} ({moving}, {resting}){mean}"
+    return f"{with_interval(len(times), len(rows))}, {moving}, {resting}{mean}"
 
 
 def by_group(rows: Sequence[Row]) -> dict[str, list[Row]]:

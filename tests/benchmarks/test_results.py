@@ -50,7 +50,7 @@ def test_a_part_is_run_on_worlds_that_are_for_report(tmp_path):
     words = results.command_of(PARTS["table3"], tmp_path, 2)
     assert words[1:5] == ["-m", "dynastar", "paper", "table3"]
     assert words[-4:] == ["--out", str(tmp_path / "paper"), "--maps", "2"]
-    assert "--worlds 80 --seed" in " ".join(results.command_of(PARTS["ablation"], tmp_path, None))
+    assert "--worlds 50 --seed" in " ".join(results.command_of(PARTS["ablation"], tmp_path, None))
     assert results.command_of(PARTS["maps"], tmp_path, 2)[-2:] == ["--missions", "2"]
 
 
