@@ -11,7 +11,7 @@ import pytest
 
 from driving import REST, ROUND, Drive, room, under_way
 from dynastar.dwa.scene import AT_REST
-from dynastar.errors import InputError, NoPath
+from dynastar.errors import InputError, NoPath, StartOccupied
 from dynastar.footprint import Footprint
 from dynastar.geometry import Goal, Twist
 from dynastar.grid import OccupancyGrid
@@ -314,3 +314,19 @@ def test_a_change_of_the_map_is_looked_at_though_it_came_right_after_a_plan():
         state = drive.state._replace(stamp=drive.now + later)
         route.update(state, goal, changed, True)
     assert len(seen) == 1
+
+
+@pytest.mark.parametrize("seen", [True, False])
+def test_who_stands_so_near_that_the_start_is_occupied_is_waited_for(seen, monkeypatch):
+    drive = under_way()
+    navigator = drive.navigator
+
+    def occupied(*_):
+        raise StartOccupied("the start has no room")
+
+    monkeypatch.setattr(navigator.planners, "plan", occupied)
+    navigator.planning_map.seen[:] = False
+    navigator.planning_map.seen[5, 5] = seen
+    navigator.route.path = None
+    event = navigator.route.update(drive.state, Goal(6.5, 3.0), False, True, False)
+    assert event.blocked == ("" if seen else "the start has no room")

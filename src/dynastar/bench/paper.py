@@ -23,7 +23,7 @@ from dynastar.robot import ROBOTS
 from dynastar.simulation import Mover, Scenario
 
 DEFAULT_MISSIONS = 500
-QUICK_MISSIONS = 20
+QUICK_MISSIONS = 16
 
 COMPARABLE = (
     "The worlds are drawn in the manner of the paper's Figs. 6 and 7; the paper prints one run in one of "

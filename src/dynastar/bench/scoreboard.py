@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 COMPETITORS = ("pure_pursuit", "kompass_dwa", "orca", "printed")  # that drive beside the navigator
 QUICK_COMPETITORS = COMPETITORS[:3]  # printed takes longer than all others together
-QUICK_EVERY = 2  # of the quick missions, competitors drive one in so many
+QUICK_EVERY = 6  # of the quick missions, competitors drive one in so many
 
 Result = Mapping[str, Any]
 Planned = dict[

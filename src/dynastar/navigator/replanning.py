@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynastar.errors import GoalObstructed, NoPath, PlanningError
+from dynastar.errors import GoalObstructed, NoPath, PlanningError, StartOccupied
 from dynastar.geometry import Goal, Pose2D
 from dynastar.guidance import PathTarget
 from dynastar.navigator.aligned import turned, turned_path, turned_pose
@@ -217,9 +217,10 @@ class Route:
     def _without_path(self, state: RobotState, error: PlanningError) -> RouteEvent:
         """No path on the planning map: what was sensed may be gone, so forget it and plan again.
 
-        The route is blocked where nothing was sensed, and after ``attempts`` to forget it. Near an
-        obstructed goal the robot waits as long in all, and without limit for a moving obstacle, and
-        forgets nothing, for it sees the obstacle.
+        That includes what is so near that the robot's own place counts as occupied. The route is blocked
+        where nothing was sensed, and after ``attempts`` to forget it. Near an obstructed goal the robot
+        waits as long in all, and without limit for a moving obstacle, and forgets nothing, for it sees
+        the obstacle.
         """
         is_near = isinstance(error, GoalObstructed)
         if is_near:
@@ -227,7 +228,8 @@ class Route:
             self._obstructed_at = state.stamp
             if self._waited > self.config.attempts * self.config.stuck_time:
                 return RouteEvent(blocked=str(error), error=error)
-        sensed = isinstance(error, NoPath) and bool(self.planners.planning_map.seen.any())
+        in_the_way = isinstance(error, NoPath | StartOccupied)
+        sensed = in_the_way and bool(self.planners.planning_map.seen.any())
         if not (is_near or sensed):
             return RouteEvent(blocked=str(error), error=error)
         if sensed and self._forgotten >= self.config.attempts:

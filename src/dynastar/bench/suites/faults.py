@@ -27,7 +27,7 @@ from dynastar.robot import ROBOTS
 from dynastar.simulation import Fault, Scenario, warm_up
 
 DEFAULT_MISSIONS = None
-QUICK_MISSIONS = 30
+QUICK_MISSIONS = 24
 
 ROBOT_NAMES = ("pioneer3dx", "jackal")
 FRACTIONS = (0.2, 0.4, 0.6)  # of the way at full speed, when the fault may strike

@@ -23,7 +23,7 @@ from dynastar.io.maps import load_map, map_files
 from dynastar.simulation import Scenario
 
 DEFAULT_MISSIONS = 100
-QUICK_MISSIONS = 16
+QUICK_MISSIONS = 12
 
 COMPARABLE = "The maps are public, the missions are this suite's: no published figure compares."
 

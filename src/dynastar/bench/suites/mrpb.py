@@ -24,7 +24,7 @@ from dynastar.robot import ROBOTS
 from dynastar.simulation import Mover, Scenario
 
 DEFAULT_MISSIONS = None
-QUICK_MISSIONS = 22
+QUICK_MISSIONS = 12
 
 COMPARABLE = (
     "Maps, starts, goals, robot and tolerances are MRPB's, its metrics are in the rows; its people walk "

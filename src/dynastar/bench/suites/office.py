@@ -22,7 +22,7 @@ from dynastar.io.scenario_file import load_scenario
 from dynastar.simulation import Mover, Noise, Scenario
 
 DEFAULT_MISSIONS = 10
-QUICK_MISSIONS = 10
+QUICK_MISSIONS = 8
 
 FILE = Path("office") / "office.toml"
 EXAMPLES = Path(__file__).parents[4] / "examples"  # of a clone

@@ -44,7 +44,7 @@ from dynastar.simulation.crowd import jupedsim_installed
 from dynastar.simulation.scenario import Attention
 
 DEFAULT_MISSIONS = 400
-QUICK_MISSIONS = 40
+QUICK_MISSIONS = 24
 ATTENTION: Attention = "late"
 
 COMPARABLE = "The worlds are this suite's own: no published figure is comparable."

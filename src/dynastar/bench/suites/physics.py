@@ -35,7 +35,7 @@ from dynastar.robot import ROBOTS, Robot
 from dynastar.simulation import Noise, Scenario, run
 
 DEFAULT_MISSIONS = 50
-QUICK_MISSIONS = 12
+QUICK_MISSIONS = 8
 
 COMPARABLE = "The missions are this suite's own: no published figure is comparable."
 

@@ -47,7 +47,7 @@ from dynastar.simulation import Scenario
 from dynastar.simulation.contact import Solids
 
 DEFAULT_MISSIONS = 1000
-QUICK_MISSIONS = 40
+QUICK_MISSIONS = 24
 
 COMPARABLE = "The worlds are this suite's own: no published figure is comparable."
 

@@ -37,7 +37,7 @@ from dynastar.robot import Robot
 from dynastar.simulation import Scenario
 
 DEFAULT_MISSIONS = 200
-QUICK_MISSIONS = 24
+QUICK_MISSIONS = 16
 
 COMPARABLE = "The missions are this suite's own: no published figure is comparable."
 
