@@ -79,7 +79,7 @@ def blocks_of(scenario: Scenario, side: float) -> list[Block]:
 
 def planned(planners: Planners) -> Path:
     """The plan from start to goal."""
-    return planners.plan(paper.START, paper.GOAL, False).path
+    return planners.plan(paper.START, paper.GOAL).path
 
 
 def followed(scenario: Scenario, blocks: list[Block]) -> float:
@@ -97,7 +97,7 @@ def followed(scenario: Scenario, blocks: list[Block]) -> float:
             hidden.remove(block)
             add(planners, block)
         if found:
-            path, driven = planners.plan(here, paper.GOAL, False).path, 0.0
+            path, driven = planners.plan(here, paper.GOAL).path, 0.0
         step = min(STEP, path.length - driven)
         driven, length = driven + step, length + step
         here = path.at(driven)

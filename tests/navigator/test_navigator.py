@@ -249,7 +249,7 @@ def test_a_robot_that_may_reverse_backs_off_out_of_a_dead_end():
     backwards = False
     while drive.status.state != "arrived":
         backwards |= drive.tick().v < -0.1
-        assert drive.now < 120.0, (drive.status.state, drive.status.reason, drive.pose)
+        assert drive.now < 180.0, (drive.status.state, drive.status.reason, drive.pose)
     assert backwards
 
 
@@ -318,7 +318,7 @@ def test_unseen_space_is_backed_into_as_the_last_resort(speed, ends):
         drive.tick()
         if drive.navigator.sensing.trusts_map:
             fastest = max(fastest, abs(drive.twist.v))
-        assert drive.now < 120.0
+        assert drive.now < 180.0
     assert drive.status.state == ends
     assert fastest <= speed + 1e-9
 

@@ -154,7 +154,7 @@ def test_a_path_to_the_wall_ends_where_the_robot_gets_near_enough(gap, radius):
     """A roomy plan is not taken if it ends at the rim of the tolerance."""
     goal = 7.9 - gap, 3.0
     config = CONFIG._replace(resolution=0.05)
-    made = Planners(PlanningMap(room(), 0.05), config, (0.3, 0.25)).plan(START, goal, False)
+    made = Planners(PlanningMap(room(), 0.05), config, (0.3, 0.25)).plan(START, goal)
     assert made.radius == pytest.approx(radius)
     assert math.dist(made.path.points[-1], goal) <= 0.15
 

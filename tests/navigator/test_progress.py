@@ -64,3 +64,28 @@ def test_a_restart_keeps_the_rounds_and_a_reset_does_not():
     progress.reset()
     assert progress.rounds == 0
     assert times_stuck(progress, [0.0] * 4, start=100.0) == []
+
+
+def test_another_path_counts_as_no_progress_and_takes_none_away():
+    """Half as fast as it needs a path a second to be: 0.05 m/s, and a path that is another each second."""
+    progress = Progress(6.0)
+    for second in range(60):
+        progress.measure_anew()
+        assert not progress.stuck(float(second), (-0.05 * second, 0.0), lambda x, y: x + 10.0)
+    progress = Progress(6.0)
+    stuck = []
+    for second in range(20):  # at rest, while the way becomes longer and longer
+        progress.measure_anew()
+        stuck.append(progress.stuck(float(second), (0.0, 0.0), lambda x, y, t=second: 10.0 + t))
+    assert any(stuck)
+
+
+def test_where_another_path_leads_back_progress_is_measured_from_the_robot():
+    progress = Progress(6.0)
+    assert not progress.stuck(0.0, (0.0, 0.0), lambda x, y: 10.0 - x)
+    assert not progress.stuck(1.0, (1.0, 0.0), lambda x, y: 10.0 - x)
+    assert not progress.stuck(2.0, (2.0, 0.0), lambda x, y: 10.0 - x)
+    progress.measure_anew()  # the goal is behind: 2 m are to be driven back before the old place
+    for second in range(3, 20):
+        x = 2.0 - 0.11 * (second - 2)
+        assert not progress.stuck(float(second), (x, 0.0), lambda x, y: 10.0 + x)

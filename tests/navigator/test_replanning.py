@@ -317,16 +317,16 @@ def test_a_change_of_the_map_is_looked_at_though_it_came_right_after_a_plan():
 
 
 @pytest.mark.parametrize("seen", [True, False])
-def test_who_stands_so_near_that_the_start_is_occupied_is_waited_for(seen, monkeypatch):
-    drive = under_way()
-    navigator = drive.navigator
-
-    def occupied(*_):
-        raise StartOccupied("the start has no room")
-
-    monkeypatch.setattr(navigator.planners, "plan", occupied)
-    navigator.planning_map.seen[:] = False
-    navigator.planning_map.seen[5, 5] = seen
-    navigator.route.path = None
-    event = navigator.route.update(drive.state, Goal(6.5, 3.0), False, True, False)
-    assert event.blocked == ("" if seen else "the start has no room")
+def test_who_stands_so_near_that_the_start_is_occupied_is_waited_for(seen):
+    """All round the robot: on the map, from where nothing leads out, or sensed, which may go."""
+    free = np.zeros((120, 160), bool)
+    taken = free.copy()
+    taken[20:101, 40:121] = True
+    grid = OccupancyGrid.from_occupied(free if seen else taken, 0.05)
+    navigator = Navigator(grid, ROUND)
+    if seen:
+        navigator.planning_map.seen[:] = taken
+        navigator.planners.mark((0, 0, taken))
+    planner = navigator.planners
+    with pytest.raises(NoPath if seen else StartOccupied, match="has no room"):
+        planner.plan((4.0, 3.0), (7.5, 5.5))

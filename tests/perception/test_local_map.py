@@ -292,9 +292,14 @@ def test_a_cell_that_was_forgotten_is_not_free_because_the_robot_comes_back():
         local.keep_free(disc, now)
         local.update(now, nothing(local))
         assert local.states[index(local, 20.3, 10.0)] == SEEN_FREE
-    late = 10.0 + 2.0 * memory
-    local.keep_free(disc, late)
+    late = 10.0 + 3.0 * memory
+    local.keep_free(disc, late)  # after a long time without data: the robot has not moved
     local.update(late, nothing(local))
+    assert local.states[index(local, 20.3, 10.0)] == SEEN_FREE
+    away = late + 2.0 * memory
+    local.update(away, nothing(local))
+    local.keep_free(disc, away + 1.0)
+    local.update(away + 1.0, nothing(local))
     assert local.states[index(local, 20.3, 10.0)] == UNSEEN
 
 

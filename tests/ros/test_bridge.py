@@ -193,7 +193,7 @@ def test_a_scenario_tells_the_node_all_of_its_robot():
     assert set(values) <= known
     limits = scenario.robot.limits._asdict()
     assert {name: values[f"limits.{name}"] for name in limits} == limits
-    config = effective_config(scenario)
+    config = effective_config(scenario)._replace(period=0.05)  # that of the simulator's node
     preset = flat(configured(scenario.preset))
     for name, value in flat(config).items():
         assert values.get(name, preset[name]) == value

@@ -159,6 +159,24 @@ def test_a_mask_that_is_refused_stops_it_until_a_good_one_comes():
     assert loop.x > START.x
 
 
+def test_one_scan_far_ahead_does_not_hide_that_no_other_comes(loop):
+    loop.ticks(20)
+    loop.bridge.take("scan", a_scan(loop.now + 0.45))
+    reasons = [loop.tick(data=False).reason for _ in range(25)]
+    assert all(reasons[-10:])
+    assert loop.twist == Twist(0.0, 0.0)
+
+
+def test_a_mask_that_was_refused_is_so_after_the_clock_went_back():
+    loop = Loop(use_map=True)
+    values = np.zeros((100, 100), np.int8)
+    loop.bridge.take("map", OUT.grid(values, (0.05, 0.0, 0.0), "map", 0.0))
+    loop.bridge.take("keepout_filter_mask", OUT.grid(values, (0.05, 0.0, 0.0), "odom", 0.0))
+    loop.now = 1.0
+    loop.bridge.request(restart="the clock went back")
+    assert loop.ticks(10)[-1].reason.startswith("keepout_filter_mask: ")
+
+
 def test_a_lidar_whose_clock_is_a_little_ahead_does_not_turn_time_back(loop):
     for k in range(60):
         if k % 2:

@@ -36,10 +36,8 @@ def robot_of(thing: Any) -> Robot:
     (v_min, v_max), (turn_min, turn_max) = np.hstack([thing.vel_min, thing.vel_max]).tolist()
     accel, turn = np.minimum(thing.info.acce[:, 0], MOST_ACCEL).tolist()
     limits = Limits(v_max, min(-turn_min, turn_max), accel, turn, accel, turn, min(v_min, 0.0))
-    if thing.shape == "circle":
-        footprint = Footprint.disc(thing.radius)
-    else:
-        footprint = Footprint.polygon(thing.original_vertices.T)
+    is_disc, corners = thing.shape == "circle", thing.original_vertices
+    footprint = Footprint.disc(thing.radius) if is_disc else Footprint.polygon(corners.T)
     sensor, scan = thing.lidar, scan_of(thing, 0.0)
     ranges, mount = (scan.range_min, scan.range_max), sensor.offset.ravel().tolist()
     lidar = Lidar(len(scan.ranges), min(sensor.angle_range, math.tau), *ranges, *mount)
@@ -85,10 +83,11 @@ class Driver:
     def __init__(
         self, env: Any, thing: Any, grid: OccupancyGrid | None = None, settings: Settings = None
     ) -> None:
+        robot = robot_of(thing)
         own = {"period": env.step_time, "goal_tolerance": thing.info.goal_threshold}
         own["range_error"] = DEVIATIONS * thing.lidar.std if thing.lidar.noise else 0.01
         config = configured("default", {**own, **(settings or {})})
-        self.navigator = Navigator(grid or map_of(env), robot_of(thing), config)
+        self.navigator = Navigator(grid or map_of(env), robot, config)
         self._env, self._thing = env, thing
         self._goal: tuple[float, ...] | None = None
 

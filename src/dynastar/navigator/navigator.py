@@ -198,7 +198,7 @@ class Navigator:
         self.sensing = Sensing(self.robot, self.config, self.planning_map)
         self._commands.forget_times()
         self.retune(self.config.dwa)
-        self.route.set_map(self.planners)
+        self.route.forget_times()
         self.progress.reset()
         self._last_turn.reset()
 

@@ -74,10 +74,14 @@ class Planners:
         for a roomy planner has to be led out of that by a way that the tightest can follow. Where
         only sensed obstacles keep the robot from the goal, the plan ends where it waits for that.
         Raises what the tightest planner raises, or GoalObstructed if the robot is to wait where it
-        is.
+        is. A start that only sensed obstacles occupy is a NoPath.
         """
         try:
             tight = self._ask(self.by_width[-1], start, goal, planner)
+        except StartOccupied as error:
+            if ways_to(self.planning_map, start, self.by_width[-1].radius, 0.0) is None:
+                raise
+            raise NoPath(str(error)) from None  # what was sensed is in the way, and may go
         except (NoPath, GoalOccupied) as error:
             place = self._waiting_place(start, goal, error)
             return self._ask(self.by_width[-1], start, place, planner)

@@ -30,20 +30,23 @@ class Progress:
     def restart(self, now: float) -> None:
         """Measure from ``now`` on (s), wherever the robot is."""
         self._anchor: Point | None = None
-        self._since = now
+        self._since, self._is_new_path = now, False
 
     def measure_anew(self) -> None:
-        """Another path: progress is measured from where the robot is, and the time since goes on.
+        """Another path: the place to compare with may be nearer to the goal now than the robot is.
 
-        So a robot whose paths replace each other is stuck as well.
+        The time goes on, so that a robot whose paths replace each other is stuck as well.
         """
-        self._anchor = None
+        self._is_new_path = True
 
     def stuck(self, now: float, here: Point, cost_to_go: CostToGoAt) -> bool:
         """Whether the robot, ``here`` (m) at ``now`` (s), made no progress for longer than its patience."""
         value = cost_to_go(*here)
         if self._stuck_at is not None and cost_to_go(*self._stuck_at) - value > LEAP:
             self._stuck_at, self.rounds = None, 0
+        if self._is_new_path and self._anchor is not None:
+            self._anchor = here if cost_to_go(*self._anchor) < value else self._anchor
+        self._is_new_path = False
         if self._anchor is None or cost_to_go(*self._anchor) - value > STEP:
             if self._anchor is not None or self._since == -math.inf:
                 self._since = now

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynastar.errors import GoalObstructed, NoPath, PlanningError, StartOccupied
+from dynastar.errors import GoalObstructed, NoPath, PlanningError
 from dynastar.geometry import Goal, Pose2D
 from dynastar.guidance import PathTarget
 from dynastar.navigator.aligned import turned, turned_path, turned_pose
@@ -71,8 +71,12 @@ class Route:
         self._waited = 0.0  # s, for an obstacle at the goal
 
     def set_map(self, planners: Planners) -> None:
-        """Another map, or another clock: the next tick plans anew."""
+        """Another map: the next tick plans anew."""
         self.planners, self.path, self._no_path_since = planners, None, None
+
+    def forget_times(self) -> None:
+        """Another clock: the next tick plans anew."""
+        self.path, self._no_path_since = None, None
         self._planned_at = self._obstructed_at = -math.inf
 
     @property
@@ -217,10 +221,9 @@ class Route:
     def _without_path(self, state: RobotState, error: PlanningError) -> RouteEvent:
         """No path on the planning map: what was sensed may be gone, so forget it and plan again.
 
-        That includes what is so near that the robot's own place counts as occupied. The route is blocked
-        where nothing was sensed, and after ``attempts`` to forget it. Near an obstructed goal the robot
-        waits as long in all, and without limit for a moving obstacle, and forgets nothing, for it sees
-        the obstacle.
+        The route is blocked where nothing was sensed, and after ``attempts`` to forget it. Near an
+        obstructed goal the robot waits as long in all, and without limit for a moving obstacle, and
+        forgets nothing, for it sees the obstacle.
         """
         is_near = isinstance(error, GoalObstructed)
         if is_near:
@@ -228,8 +231,7 @@ class Route:
             self._obstructed_at = state.stamp
             if self._waited > self.config.attempts * self.config.stuck_time:
                 return RouteEvent(blocked=str(error), error=error)
-        in_the_way = isinstance(error, NoPath | StartOccupied)
-        sensed = in_the_way and bool(self.planners.planning_map.seen.any())
+        sensed = isinstance(error, NoPath) and bool(self.planners.planning_map.seen.any())
         if not (is_near or sensed):
             return RouteEvent(blocked=str(error), error=error)
         if sensed and self._forgotten >= self.config.attempts:

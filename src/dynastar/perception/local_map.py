@@ -55,6 +55,7 @@ class LocalMap:
         self.states = np.zeros((n, n), np.uint8)
         self.open = np.zeros((n, n), np.bool_)
         self.field = np.zeros((n, n), np.float32)
+        self._updated = -math.inf  # s
 
     @property
     def origin(self) -> tuple[float, float]:
@@ -88,6 +89,7 @@ class LocalMap:
         columns = np.floor((centres + x - x0) / self.resolution).astype(np.int64)
         other.free_at = picked(self.free_at, rows, columns, kernels.NEVER)
         self._move_hits(other)
+        other._updated = self._updated
         return other
 
     def _move_hits(self, other: "LocalMap") -> None:
@@ -138,10 +140,10 @@ class LocalMap:
         free_at[free] = np.maximum(free_at[free], now)
 
     def keep_free(self, disc: Disc, now: float) -> None:
-        """Keep the free cells in a disc round the robot from being forgotten."""
+        """Keep the cells round the robot that were free at the last update from being forgotten."""
         box, inside = self._cells_in(disc)
         free_at = self.free_at[box]
-        known = (free_at < now) & (free_at >= now - self.config.memory)
+        known = (free_at < now) & (free_at >= self._updated - self.config.memory)
         free_at[inside & known & (self.hit_at[box] < free_at)] = now
 
     def see(self, scan: PlacedScan, moving: Mask) -> None:
@@ -174,6 +176,7 @@ class LocalMap:
         (n, n) are keep-out cells, which are not open though they may be free. ``trusted`` (n, n) are
         open while unseen.
         """
+        self._updated = now
         free_at, hit_at, horizon = self.free_at, self.hit_at, now - self.config.memory
         free = (free_at > hit_at) & (free_at >= horizon)
         occupied = (hit_at >= free_at) & (hit_at >= horizon)

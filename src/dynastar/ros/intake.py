@@ -16,6 +16,7 @@ from dynastar.ros.settings import NodeSettings
 from dynastar.ros.transforms import Mount, Transforms
 from dynastar.scan import LaserScan
 
+APART = 0.1  # s that the clocks of two lidars may be apart
 JUMP = 0.5  # s by which a clock that goes back, or a stamp ahead of it, is another time
 NOWHERE = Pose2D(math.nan, math.nan, math.nan)
 LAYERS = "map", "keepout_filter_mask", "speed_filter_mask"
@@ -127,7 +128,7 @@ class Intake(ABC):
         self.localization.reset()
         self.transforms.clear()
         self._scan, self._new_scans, self.refused = None, [], reason
-        self._refusals.clear()
+        self._refusals = {one: why for one, why in self._refusals.items() if one in LAYERS}
         self._at = -math.inf
 
     # -- what is known now ------------------------------------------------------------------------
@@ -150,10 +151,10 @@ class Intake(ABC):
         scanned = -math.inf if scan is None else scan.stamp
         trouble = trouble or self._late("scan", "scan", scanned, now)
         trouble = trouble or self._follow_tf(now)
-        newest = [now, self._at] if now > self._at - JUMP else [now]
-        if scan is not None and scan.stamp - now <= JUMP:
-            newest.append(scan.stamp)
-        at = self._at = max(newest)  # a lidar's clock may be ahead, and the next one's is not
+        at = now if scan is None or scan.stamp - now > JUMP else max(now, scan.stamp)
+        if 0.0 < self._at - at <= APART:  # by another lidar's scan
+            at = self._at
+        self._at = at
         state = self.localization.at(at)
         if state is None:
             unknown = "the pose in the map is not known yet"

@@ -14,6 +14,7 @@ from dynastar.ros.localization import PoseSource
 from dynastar.simulation import Scenario
 from dynastar.simulation.run import effective_config
 
+SIMULATED_PERIOD = 0.05  # s between the scans of `dynastar ros-sim`, by default
 AGE = Field("largest age of scan and odometry before the robot brakes", "s", 0.05, 2.0)
 
 
@@ -140,6 +141,7 @@ def _parameters(scenario: Scenario) -> dict[str, Any]:
     found["preset"] = scenario.preset
     config = flat(effective_config(scenario))
     found |= {name: value for name, value in config.items() if value != preset[name]}
+    found["period"] = SIMULATED_PERIOD
     found |= {f"limits.{name}": value for name, value in robot.limits._asdict().items()}
     if robot.footprint.is_disc:
         found["radius"] = robot.footprint.circumscribed

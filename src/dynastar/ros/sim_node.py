@@ -18,6 +18,7 @@ from dynastar.geometry import Pose2D, Twist
 from dynastar.ros.driving_node import FRAMES, FRAMES_FIXED, LATCHED
 from dynastar.ros.middleware import make, message_class
 from dynastar.ros.outgoing import Messages
+from dynastar.ros.settings import SIMULATED_PERIOD
 from dynastar.simulation import Scenario, World
 from dynastar.simulation.start import check_start
 
@@ -31,7 +32,7 @@ class SimulatorNode(Node):  # type: ignore[misc]
     def __init__(self, scenario: Scenario, **options: Any) -> None:
         check_start(scenario)
         super().__init__("dynastar_sim", **options)
-        self.period = float(self.declare_parameter("period", 0.05).value)
+        self.period = float(self.declare_parameter("period", SIMULATED_PERIOD).value)
         self.publish_clock = bool(self.declare_parameter("publish_clock", False).value)
         self.stamped = bool(self.declare_parameter("enable_stamped_cmd_vel", False).value)
         for name in ("publish_scan", "publish_odom"):  # false is a fault to try
