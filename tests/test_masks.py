@@ -35,6 +35,22 @@ def test_a_zone_one_cell_wide_of_a_finer_mask_is_kept(column):
     assert np.isinf(limits).sum() == 380
 
 
+def test_a_zone_of_a_finer_mask_that_is_turned_is_kept():
+    """A diagonal line, one cell wide, of a mask a third as wide: each of its cells lies in the zone."""
+    fine = np.zeros((90, 90), np.int8)
+    np.fill_diagonal(fine, 100)
+    grid = OccupancyGrid(np.zeros((40, 40), np.int8), GridFrame(0.05, 0.0, 0.0, 0.2))
+    mask = OccupancyGrid(fine, GridFrame(0.0167, 0.1, 0.3, 0.5))
+    keepout = with_keepout(grid, mask).keepout
+    for row, column in np.argwhere(fine):
+        for part in (0.05, 0.5, 0.95):
+            x, y = mask.frame.to_world(row + part, column + part)
+            at = grid.frame.to_grid(x, y)
+            inside = 0 <= at[0] < 40 and 0 <= at[1] < 40
+            assert not inside or keepout[int(at[0]), int(at[1])]
+    assert 0 < keepout.sum() < 150
+
+
 def test_percentages_are_of_the_top_speed_and_zero_is_no_limit():
     values = np.array([[0, -1, 20, 100, 50, 0]] * 4, np.int8)
     mask = OccupancyGrid(values, GRID.frame)

@@ -30,9 +30,9 @@ class SpeedScale(NamedTuple):
 
 def with_keepout(grid: OccupancyGrid, mask: OccupancyGrid) -> OccupancyGrid:
     """``grid`` with keep-out zones where ``mask``, of any resolution, is occupied."""
-    keepout = np.zeros((grid.rows, grid.columns), np.bool_)
-    for values in _laid_over(grid, mask, -1):
-        keepout |= values >= OCCUPIED_FROM
+    keepout = np.zeros(grid.values.shape, np.bool_)
+    for index, values in _laid_over(grid, mask, mask.values >= OCCUPIED_FROM):
+        keepout.flat[index[values >= OCCUPIED_FROM]] = True
     if grid.keepout is not None:
         keepout |= grid.keepout
     return OccupancyGrid(grid.values, grid.frame, keepout, grid.speed_limit)
@@ -60,9 +60,9 @@ def with_speed_limits(
     Raises MapError where it says less than that.
     """
     by_value = _limits_by_value(v_max, scale)
-    limits = np.full((grid.rows, grid.columns), math.inf, np.float32)
-    for values in _laid_over(grid, mask, 0):
-        np.minimum(limits, cv2.LUT(values.view(np.uint8), by_value), out=limits)
+    limits = np.full(grid.values.shape, math.inf, np.float32)
+    for index, values in _laid_over(grid, mask, by_value[mask.values.view(np.uint8)] < math.inf):
+        np.minimum.at(limits.reshape(-1), index, by_value[values.view(np.uint8)])
     if (limits < 0.0).any():
         lowest = limits.min() / (0.01 * v_max if scale.type == "percent" else 1.0)
         raise MapError(
@@ -85,26 +85,24 @@ def _limits_by_value(v_max: float, scale: SpeedScale) -> npt.NDArray[np.float32]
 
 
 def _laid_over(
-    grid: OccupancyGrid, mask: OccupancyGrid, outside: int
-) -> Iterator[npt.NDArray[np.int8]]:
-    """The mask's values at the centre of each cell of ``grid``; of a finer mask, at places all over it."""
-    fine = math.ceil(grid.resolution / mask.resolution - ROUNDED)
-    places = (np.arange(fine) + 0.5) / fine
-    for place in product(places, places):
-        yield _values_at(grid, mask, outside, place)
+    grid: OccupancyGrid, mask: OccupancyGrid, counts: npt.NDArray[np.bool_]
+) -> Iterator[tuple[npt.NDArray[np.int64], npt.NDArray[np.int8]]]:
+    """Cells of ``grid`` (flat indices) and the mask's values there, bit by bit.
 
-
-def _values_at(
-    grid: OccupancyGrid, mask: OccupancyGrid, outside: int, place: tuple[float, float]
-) -> npt.NDArray[np.int8]:
-    """The mask's value at a place (row, column from 0 to 1) within each cell of ``grid``."""
-    values = np.full((grid.rows, grid.columns), outside, np.int8)
-    step = max(1, AT_ONCE // grid.columns)
-    for first in range(0, grid.rows, step):
-        part = values[first : first + step]
-        points = np.indices(part.shape).reshape(2, -1).T + (first + place[0], place[1])
-        found = mask.frame.points_to_grid(grid.frame.points_to_world(points))
-        rows, columns = np.floor(found).astype(np.int64).T
-        inside = (rows >= 0) & (rows < mask.rows) & (columns >= 0) & (columns < mask.columns)
-        part[inside.reshape(part.shape)] = mask.values[rows[inside], columns[inside]]
-    return values
+    A cell has the value at its centre, and where the mask is finer those of all of its cells that count
+    and lie over it, by their corners: so no zone is lost.
+    """
+    is_finer = mask.resolution < grid.resolution * (1.0 - ROUNDED)
+    source, target = (mask, grid) if is_finer else (grid, mask)
+    inset = np.array([ROUNDED, 1.0 - ROUNDED] if is_finer else [0.5])
+    for first in range(0, source.values.size, AT_ONCE):
+        part = np.arange(first, min(first + AT_ONCE, source.values.size))
+        part = part[counts.reshape(-1)[part]] if is_finer else part
+        corners = np.column_stack(np.divmod(part, source.columns))
+        for offset in product(inset, inset):
+            points = source.frame.points_to_world(corners + offset)
+            found = np.floor(target.frame.points_to_grid(points)).astype(np.int64)
+            inside = ((found >= 0) & (found < (target.rows, target.columns))).all(axis=1)
+            over = found[inside] @ (target.columns, 1)
+            index, values = (part[inside], over) if target is mask else (over, part[inside])
+            yield index, mask.values.reshape(-1)[values]

@@ -27,13 +27,10 @@ def as_dataframe(columns: Columns) -> "DataFrame":
 def write_csv(columns: Columns, path: str | Path) -> None:
     """Write columns, below their names, to a CSV file; InputError where that cannot be done."""
     path = Path(path).expanduser()
-    aside = path.with_name(f".{path.name}.aside")
     try:
-        with aside.open("w", encoding="utf-8", newline="") as file:
+        with path.open("w", encoding="utf-8", newline="") as file:
             writer = csv.writer(file)
             writer.writerow(columns)
             writer.writerows(zip(*columns.values(), strict=True))
-        aside.replace(path)
     except OSError as error:
-        aside.unlink(missing_ok=True)
         raise InputError(f"{path}: cannot be written: {error.strerror}") from None

@@ -63,7 +63,7 @@ def test_the_margin_grows_with_the_heading_error_and_the_way_of_a_stop():
         )
         drive.for_seconds(0.1)
         margins.append((made[-1].around.margin_to_closed, drive))
-    assert margins[0][0] == pytest.approx(steady.navigator.margin)
+    assert margins[0][0] == pytest.approx(steady.navigator.driving.margin)
     v = unsure.twist.v
     stop = v * v / (2.0 * LIMITS.v_brake) + 2.0 * v * unsure.navigator.config.period
-    assert margins[1][0] == pytest.approx(unsure.navigator.margin + 0.05 * stop, abs=0.01)
+    assert margins[1][0] == pytest.approx(unsure.navigator.driving.margin + 0.05 * stop, abs=0.01)

@@ -249,7 +249,7 @@ def test_a_robot_that_may_reverse_backs_off_out_of_a_dead_end():
     backwards = False
     while drive.status.state != "arrived":
         backwards |= drive.tick().v < -0.1
-        assert drive.now < 180.0, (drive.status.state, drive.status.reason, drive.pose)
+        assert drive.now < 120.0, (drive.status.state, drive.status.reason, drive.pose)
     assert backwards
 
 

@@ -232,8 +232,8 @@ def test_a_map_of_other_cells_has_a_local_map_on_them():
     drive = Drive(room(), pose=(4.0, 3.0, 0.0))
     drive.navigator.set_goal(Goal(6.5, 3.0))
     drive.for_seconds(0.5)
-    margin, values = drive.navigator.margin, room().refined(5).values
+    margin, values = drive.navigator.driving.margin, room().refined(5).values
     drive.navigator.set_map(OccupancyGrid(values[::2, ::2], GridFrame(0.04)))
     assert drive.navigator.sensing.local_map.resolution == pytest.approx(0.04)
-    assert drive.navigator.margin == margin
+    assert drive.navigator.driving.margin == margin
     drive.until("arrived")

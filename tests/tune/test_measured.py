@@ -250,6 +250,21 @@ def test_what_a_robot_file_declares_and_no_recording_tells_is_kept(drives, tmp_p
     assert (config.dwa.weights.risk, config.local_map.narrowest) == (11.0, 0.03)
 
 
+def test_messages_that_cannot_be_used_are_named(drives, tmp_path, monkeypatch):
+    from dynastar.tune import recording
+
+    read = recording.scan_of
+
+    def odd(message, mount, count=iter(range(10**9))):
+        scan = read(message, mount)
+        return replace(scan, ranges=scan.ranges[:0]) if next(count) == 3 else scan
+
+    monkeypatch.setattr(recording, "scan_of", odd)
+    found = measured(read_drive(drives[1][1]))
+    assert found.left_out[0].startswith("of scan 1 message refused, the first since ")
+    assert found.left_out[0] in found.words()
+
+
 def test_what_no_robot_can_be_is_no_file(drives, tmp_path, capsys, monkeypatch):
     """Odometry that turns the other way than commanded."""
     from dynastar.tune import recording

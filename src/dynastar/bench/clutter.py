@@ -77,7 +77,7 @@ def tables(rows: Sequence[Row]) -> list[Table]:
             [of for of in summary(rows) if of["speed"] == paper.MOVER_SPEED],
             lambda of: f"{100.0 * of['occupied']:.0f} % occupied",
             f"{notes} Without occupied cells all worlds are one. The worlds are the first that are "
-            f"possible; left out before the last of them were {_left_out(rows)}.",
+            f"possible; left out before the last of them were {_worlds_left_out(rows)}.",
         ),
         _table(
             "walker",
@@ -93,8 +93,8 @@ def tables(rows: Sequence[Row]) -> list[Table]:
     ]
 
 
-def _left_out(rows: Sequence[Row]) -> str:
-    """How many worlds of each density have no way for the robot, and so were left out, in words."""
+def _worlds_left_out(rows: Sequence[Row]) -> str:
+    """A note on the worlds without a way for the robot: "3 of 53 with 10 % occupied, ..."."""
     numbers: dict[float, set[int]] = {}
     for row in rows:
         numbers.setdefault(row["occupied"], set()).add(row["number"])

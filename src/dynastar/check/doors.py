@@ -67,27 +67,27 @@ def doors(found: Sequence[Passage], ways: Ways) -> Finding:
     values["narrowest"] = found[0].width
     if shut:
         text = (
-            f"The robot needs {ways.drive:.2f} m and does not fit through {_which(shut, found)}: "
+            f"The robot needs {ways.drive:.2f} m and does not fit through {_named(shut, found)}: "
             f"{_places(shut)}."
         )
         advice = "Measure them, and correct the map, the footprint or the margins, or set no goals there."
         return Finding("doors", "problem", text, advice, values)
     if tight:
         text = (
-            f"The robot may not get through {_which(tight, found)}, as rounding to cells may leave "
+            f"The robot may not get through {_named(tight, found)}, as rounding to cells may leave "
             f"less than {ways.drive:.2f} m: {_places(tight)}."
         )
         advice = "Try them, or take a smaller resolution and smaller margins."
         return Finding("doors", "warning", text, advice, values)
     narrowest = f"{'the narrowest is ' if len(found) > 1 else ''}{_places(found[:1])}"
-    text = f"The robot fits through {_which(found, found)}: {narrowest}"
+    text = f"The robot fits through {_named(found, found)}: {narrowest}"
     if found[0].width < ways.turn:
         text += ", where it cannot turn on the spot"
     return Finding("doors", "ok", f"{text}.", "", values)
 
 
-def _which(some: Sequence[Passage], found: Sequence[Passage]) -> str:
-    """``some`` of the passages ``found`` on the map, in words."""
+def _named(some: Sequence[Passage], found: Sequence[Passage]) -> str:
+    """Part of a sentence: "all 3 passages of the map", "1 of the map's 3 passages"."""
     if len(found) == 1:
         return "the map's only passage"
     if len(some) == len(found):

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.config import counted
 from dynastar.errors import DataError, InputError
 from dynastar.geometry import Pose2D, Twist, wrap_angle
 from dynastar.navigator import NavigatorConfig, RobotState
@@ -18,7 +17,7 @@ from dynastar.navigator.readings import Readings
 from dynastar.robot import Robot, slew
 from dynastar.ros.bag import BagReader
 from dynastar.ros.bridge import TAKES
-from dynastar.ros.incoming import pose_of, scan_of, seconds, twist_of
+from dynastar.ros.incoming import pose_of, refusals, scan_of, seconds, twist_of
 from dynastar.ros.replay import COMMANDS, topics_of
 from dynastar.ros.transforms import Mount, Transforms
 
@@ -168,13 +167,11 @@ class _Collected:
 
     def recording(self, path: str | Path) -> Recording:
         """What was collected; DataError if there are fewer than two scans or odometry messages."""
+        refused = refusals(self.refused)
         for short, what in (("scan", "scans"), ("odom", "messages of odometry")):
             if len(self.stamps[short]) < 2:
-                raise DataError(f"{path}: has {len(self.stamps[short])} {what}: expected 2 or more")
-        refused = [
-            f"of {short} {counted(len(words), 'message')} refused, the first since {words[0]}"
-            for short, words in self.refused.items()
-        ]
+                has = f"{path}: has {len(self.stamps[short])} {what}: expected 2 or more"
+                raise DataError("; ".join([has, *refused]))
         beams, fov, low, high = map(np.array, zip(*self.scans, strict=True))
         return Recording(
             Stream(*np.array(self.stamps["scan"]).T),

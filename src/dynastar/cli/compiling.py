@@ -63,7 +63,7 @@ def _wait(children: "list[subprocess.Popen[bytes]]") -> None:
 
 def plan() -> None:
     """Compile the kernels of the default planners."""
-    from dynastar.planning import warm_up_default
+    from dynastar.planning.compiling import warm_up_default
 
     warm_up_default()
 

@@ -9,7 +9,8 @@ from dynastar.errors import InputError
 from dynastar.extras import require
 from dynastar.io.paths import local_path
 
-NAMING = ".toml", ".yaml", ".yml"
+NAMING = {".toml": "=", ".yaml": ":", ".yml": ":"}  # texts that may name files, after such a sign
+QUOTED = re.compile(r"[\"']([^\"']+)[\"']")
 MOST_TEXT = 2**20  # bytes, of a file that may name others
 PICTURES = ".png", ".svg", ".pdf"
 
@@ -42,15 +43,18 @@ def check_file(option: str, name: str | Path | None, read: Iterable[Path] = ()) 
 
 def _read_with(file: Path, found: frozenset[Path] = frozenset()) -> frozenset[Path]:
     """A file and those that it names, if it is a text that may: a scenario its map, a map its image."""
-    if file.resolve() in found or not file.is_file():
+    try:
+        if file.resolve() in found or not file.is_file():
+            return found
+        names = file.suffix.lower() in NAMING and file.stat().st_size < MOST_TEXT
+        text = file.read_text(encoding="utf-8", errors="replace") if names else ""
+    except (OSError, ValueError):  # no name that a file can have
         return found
     found |= {file.resolve()}
-    if file.suffix.lower() in NAMING and file.stat().st_size < MOST_TEXT:
-        for name in re.split(
-            r"[\s'\"=:,\[\]{}]+", file.read_text(encoding="utf-8", errors="replace")
-        ):
-            if name:
-                found = _read_with(file.parent / name, found)
+    for line in text.splitlines():  # a value may be quoted, and hold spaces
+        _, _, value = re.sub(r"\s#.*", "", line).partition(NAMING[file.suffix.lower()])
+        for name in (value.strip().strip("'\""), *QUOTED.findall(line)):
+            found = _read_with(file.parent / name, found) if name else found
     return found
 
 

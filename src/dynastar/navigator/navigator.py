@@ -85,11 +85,6 @@ class Navigator:
         return self.route.planners
 
     @property
-    def margin(self) -> float:
-        """The margin (m) kept from what may stand anywhere not observed free: the declared errors."""
-        return margin_of(self.robot, self.config)
-
-    @property
     def status(self) -> Status:
         """State of the navigator and its reason: a copy, as of the last command."""
         mission, route, choice = self.mission, self.route, self._choice
@@ -153,7 +148,7 @@ class Navigator:
         self.sensing.forget()
 
     def _planners_on(self, planning_map: PlanningMap) -> Planners:
-        radii = radii_of(self.robot.footprint, self.margin)
+        radii = radii_of(self.robot.footprint, margin_of(self.robot, self.config))
         return Planners(planning_map, self.config, radii, self._planner)
 
     # -- missions ---------------------------------------------------------------------------------

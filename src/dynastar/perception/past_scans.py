@@ -7,11 +7,13 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.compiled import inner, record
+from dynastar.geometry import Pose2D
 from dynastar.perception.placed_scan import PlacedScan, Sensor
 
 MEMORY = 30.0  # s that scans are kept
 CLOSEST = 0.1  # s that they are apart at least,
 GROWTH = 0.5  # and of their age
+APART, TURNED = 0.1, 0.5  # m and rad, up to which two mounts are those of one lidar
 SENSOR = record(Sensor)
 
 
@@ -38,6 +40,12 @@ def seen_free_at(x: float, y: float, space: SeenFree) -> float:
     return -math.inf
 
 
+def is_same(mount: Pose2D, other: Pose2D) -> bool:
+    """Whether two mounts are those of one lidar, which may be carried by a joint."""
+    turn = math.remainder(mount.theta - other.theta, math.tau)
+    return math.dist(mount[:2], other[:2]) < APART and abs(turn) < TURNED
+
+
 class PastScans:
     """The last scan of each lidar and older ones, farther apart the older they are."""
 
@@ -52,13 +60,13 @@ class PastScans:
         """
         now, kept = scan.sensor.stamp, [scan]
         recent = [one for one in self._kept if now - one.sensor.stamp <= MEMORY]
-        same = [one for one in recent if one.mount == scan.mount]
+        same = [one for one in recent if is_same(one.mount, scan.mount)]
         stamps = [*(one.sensor.stamp for one in same), -math.inf]
         for one, older in zip(same, stamps[1:], strict=True):
             newer = kept[-1].sensor.stamp
             if newer - older > max(CLOSEST, GROWTH * (now - newer)):
                 kept.append(one)
-        kept += [one for one in recent if one.mount != scan.mount]
+        kept += [one for one in recent if not is_same(one.mount, scan.mount)]
         self._kept = sorted(kept, key=lambda one: -one.sensor.stamp)
 
     def space(self) -> SeenFree:

@@ -4,7 +4,7 @@ from dynastar.planning.any_angle import straighten
 from dynastar.planning.external import Planner, plan_by
 from dynastar.planning.heuristic import PLANNERS, HeuristicConfig
 from dynastar.planning.plan_type import Plan, PlannerConfig
-from dynastar.planning.planner import GridPlanner, plan, warm_up_default
+from dynastar.planning.planner import GridPlanner, plan
 from dynastar.planning.search import ALGORITHMS, SearchGrid, SearchResult
 from dynastar.planning.segments import segment_clear
 from dynastar.planning.smoothing import smooth
@@ -26,5 +26,4 @@ __all__ = [
     "smooth",
     "straighten",
     "warm_up",
-    "warm_up_default",
 ]

@@ -6,8 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.clearance import inflate
+from dynastar.planning.bounds import check_window
 from dynastar.planning.neighbours import components
-from dynastar.planning.search import Cell, Cells, SearchGrid, check_window
+from dynastar.planning.search import Cell, Cells, SearchGrid
 from dynastar.planning.segments import first_contact, is_clear, mask_bytes
 
 Mask = npt.NDArray[np.bool_]

@@ -1,6 +1,5 @@
 """Planning on a map in metres: way out of the inflation, search and smoothing."""
 
-import functools
 import time
 
 import numpy as np
@@ -25,7 +24,7 @@ from dynastar.planning.escape import NO_WAY, WayOut, reach_of_escape, smoothed, 
 from dynastar.planning.explain import explained
 from dynastar.planning.inflated import InflatedGrid
 from dynastar.planning.plan_type import Plan, PlannerConfig
-from dynastar.planning.search import ALGORITHMS, Cell, Cells, SearchGrid, SearchResult
+from dynastar.planning.search import ALGORITHMS, Cell, Cells, SearchResult
 from dynastar.planning.segments import first_contact
 from dynastar.planning.smoothing import smooth, without_repeats
 from dynastar.planning.warming import warm_up
@@ -290,18 +289,3 @@ def plan(
         return prepared.plan(start, goal, explored, tolerance=tolerance)
     except PlanningError as error:
         raise explained(error, grid, start, goal, radius, unknown) from None
-
-
-@functools.cache
-def warm_up_default() -> None:
-    """Compile or load the kernels of the default planners, of a way out and of replanning."""
-    rng = np.random.default_rng(0)
-    blocked = rng.random((30, 30)) < 0.3
-    blocked[[0, -1]] = blocked[:, [0, -1]] = False  # so many corners, and yet a way round
-    grid = OccupancyGrid(100 * blocked.astype(np.int8), 1.0)
-    for planner in "improved", "auto":
-        plan(grid, (0.5, 0.5), (29.5, 29.5), planner, explored=True)
-    search = SearchGrid(blocked)
-    row, column = map(int, search.search((0, 0), (29, 29), "auto").cells[3])
-    search.update(row, column, [[True]])
-    search.search((0, 0), (29, 29), "auto")

@@ -9,6 +9,7 @@ import numpy.typing as npt
 from dynastar.config import choose
 from dynastar.errors import GoalOccupied, MapError, NoPath, OutOfMap, StartOccupied
 from dynastar.planning import bucket_kernel, heap_kernel, jump_kernel, labels
+from dynastar.planning.bounds import check_window
 from dynastar.planning.goal_tree import GoalTree
 from dynastar.planning.heuristic import PLANNERS, HeuristicConfig, kernel_terms
 from dynastar.planning.neighbours import count_turns, find_near
@@ -289,17 +290,6 @@ class SearchGrid:
                 f"expected rows 0 to {self.rows - 1}, columns 0 to {self.columns - 1}"
             )
         return row, column
-
-
-def check_window(row0: int, col0: int, window: tuple[int, ...], whole: tuple[int, int]) -> None:
-    """Raise MapError or OutOfMap unless a window of that shape at (row0, col0) lies in the map."""
-    if len(window) != 2:
-        raise MapError(f"a patch has shape {window}: expected (rows, columns)")
-    if row0 < 0 or col0 < 0 or row0 + window[0] > whole[0] or col0 + window[1] > whole[1]:
-        raise OutOfMap(
-            f"a window of {window[0]} x {window[1]} cells at ({row0}, {col0}) leaves the map "
-            f"of {whole[0]} x {whole[1]}"
-        )
 
 
 _NO_SUMS = np.zeros((1, 1), np.int32)

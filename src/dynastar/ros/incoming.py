@@ -4,10 +4,12 @@ Messages are used by their fields alone, so those of rclpy and those read from a
 """
 
 import math
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
+from dynastar.config import counted
 from dynastar.errors import InputError
 from dynastar.geometry import Goal, Pose2D, Twist, wrap_angle
 from dynastar.grid import GridFrame, OccupancyGrid
@@ -83,6 +85,14 @@ def grid_of(message: Any, frame: str) -> OccupancyGrid:
     values = np.frombuffer(message.data, dtype=np.int8).reshape(rows, columns)
     pose = pose_of(info.origin, "the map's origin")
     return OccupancyGrid(values, GridFrame(float(info.resolution), *pose))
+
+
+def refusals(refused: Mapping[str, Sequence[str]]) -> tuple[str, ...]:
+    """How many messages of each topic were refused, and why the first was, in words."""
+    return tuple(
+        f"of {topic} {counted(len(words), 'message')} refused, the first since {words[0]}"
+        for topic, words in refused.items()
+    )
 
 
 def scan_of(message: Any, mount: Mount) -> LaserScan:

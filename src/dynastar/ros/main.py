@@ -5,7 +5,6 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import rclpy
-from rclpy._rclpy_pybind11 import RCLError
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
@@ -45,7 +44,7 @@ def run(make: Callable[[], Node], arguments: Sequence[str]) -> int:
         signal.signal(number, lambda number, frame: stopping.append(number))
     try:
         rclpy.init(args=list(arguments), signal_handler_options=SignalHandlerOptions.NO)
-    except RCLError as error:
+    except RuntimeError as error:  # what rclpy's own errors are
         raise ConfigError(
             f"ROS cannot read its arguments: {' '.join(str(error).split())}"
         ) from None

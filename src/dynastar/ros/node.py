@@ -150,9 +150,11 @@ class NavigatorNode(DrivingNode):
         self.get_logger().info(f"{'goal' if len(goals) == 1 else 'goals'} {words}")
 
     def stop(self) -> None:
-        """Stops the robot, and ends the recording."""
-        super().stop()
-        self._end_recording()
+        """Stops the robot; the recording ends before, for no tick belongs to this command."""
+        try:
+            self._end_recording()
+        finally:
+            super().stop()
 
     # -- what goes out ----------------------------------------------------------------------------
 

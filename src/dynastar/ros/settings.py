@@ -43,7 +43,8 @@ class NodeSettings(NamedTuple):
     enable_stamped_cmd_vel: Annotated[bool, Field("TwistStamped overrides of Twist")] = False
     data_age: Annotated[float, AGE] = 0.2
     pose_age: Annotated[
-        float, Field("largest age of the transform from odometry to map, with tf", "s", 0.1, 1e9)
+        float,
+        Field("largest age, or lead, of a transform from odometry to map, with tf", "s", 0.1, 1e9),
     ] = 2.0
     bag: Annotated[str, Field("new folder to record to, as MCAP; empty: none")] = ""
     speed_filter_type: Annotated[

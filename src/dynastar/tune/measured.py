@@ -45,6 +45,7 @@ class Measured:
     own: tuple[OwnPart, ...]
     own_words: str
     robot: Robot | None
+    left_out: tuple[str, ...] = ()
 
     def words(self) -> str:
         """All of it as lines of text."""
@@ -54,7 +55,7 @@ class Measured:
             lines.append(
                 f"own part: {part.angle:.3g} rad, {part.distance:.3g} m, {part.readings} readings"
             )
-        return "\n".join([*lines, f"no recording tells: {NEVER_TOLD}"])
+        return "\n".join([*lines, *self.left_out, f"no recording tells: {NEVER_TOLD}"])
 
 
 def measured(drive: Drive, robot: Robot | None = None) -> Measured:
@@ -87,7 +88,7 @@ def measured(drive: Drive, robot: Robot | None = None) -> Measured:
     error = estimates["range_error"]
     way = float(np.abs(np.diff(_forward(drive.poses))).sum())
     own, words = own_parts(drive.scans, way, reach, error.high if error.told else 0.05)
-    return Measured(estimates, tuple(own), words, robot)
+    return Measured(estimates, tuple(own), words, robot, drive.left_out)
 
 
 def robot_toml(found: Measured, source: str, told: Mapping[str, Any] | None = None) -> str:

@@ -14,7 +14,7 @@ from dynastar.geometry import Pose2D
 from dynastar.robot import Robot
 from dynastar.ros.bag import BagReader
 from dynastar.ros.bridge import REQUESTS, started
-from dynastar.ros.incoming import pose_of, scan_of, twist_of
+from dynastar.ros.incoming import pose_of, refusals, scan_of, twist_of
 from dynastar.ros.replay import COMMANDS, topics_of
 from dynastar.ros.transforms import Mount
 from dynastar.scan import LaserScan
@@ -31,8 +31,8 @@ AT_ORIGIN = Mount(Pose2D(0.0, 0.0, 0.0), False)
 class Drive:
     """A recorded drive: times (s), ``commands`` (n, 2) and ``twists`` (m, 2) in m/s and rad/s.
 
-    ``poses`` (m, 3) are those of the odometry. ``robot`` is what the recording was made with, None where
-    it does not say.
+    ``poses`` (m, 3) are those of the odometry. ``robot`` is what the recording was made with, None
+    where it does not say. ``left_out`` says in words which messages were refused.
     """
 
     command_times: Floats
@@ -43,6 +43,7 @@ class Drive:
     scan_times: Floats
     scans: tuple[LaserScan, ...]
     robot: Robot | None = None
+    left_out: tuple[str, ...] = ()
 
 
 def read_drive(path: str | Path, remap: Mapping[str, str] | None = None) -> Drive:
@@ -66,6 +67,7 @@ def read_drive(path: str | Path, remap: Mapping[str, str] | None = None) -> Driv
 def _read(bag: BagReader, shorts: Mapping[str, str]) -> Drive:
     found: dict[str, list[tuple[float, Any]]] = {short: [] for short in shorts.values()}
     robot = None
+    refused: dict[str, list[str]] = {}
     for name, time, message in bag.messages(set(shorts)):
         short = shorts[name]
         if short == REQUESTS:
@@ -73,19 +75,14 @@ def _read(bag: BagReader, shorts: Mapping[str, str]) -> Drive:
         elif short == COMMANDS:
             found[short].append((time, twist_of(getattr(message, "twist", message))))
         elif short == "odom":
-            try:
-                odometry = (*pose_of(message.pose.pose), *twist_of(message.twist.twist))
-            except InputError:  # as a robot's node does
-                continue
-            if all(map(math.isfinite, odometry)):
-                found[short].append((time, odometry))
+            _note(found[short], refused, short, time, _odometry(message))
         else:
             scan = scan_of(message, AT_ORIGIN)
-            if scan.fault() is None:
-                found[short].append((time, scan))
+            _note(found[short], refused, short, time, scan.fault() or scan)
     for short in ("scan", "odom", COMMANDS):
         if len(found[short]) < 2:
-            raise DataError(f"{bag.path}: fewer than two messages of '{short}' that can be used")
+            few = f"{bag.path}: fewer than two messages of '{short}' that can be used"
+            raise DataError("; ".join([few, *refusals(refused)]))
     times, states = (np.array(part) for part in zip(*found["odom"], strict=True))
     apart = np.concatenate([[True], np.diff(times) > BURST])
     times, states = times[apart], states[apart]
@@ -98,7 +95,31 @@ def _read(bag: BagReader, shorts: Mapping[str, str]) -> Drive:
         np.array([time for time, _ in found["scan"]]),
         tuple(scan for _, scan in found["scan"]),
         robot,
+        refusals(refused),
     )
+
+
+def _odometry(message: Any) -> tuple[float, ...] | str:
+    """Pose and speeds of a message of odometry, or what is wrong with them."""
+    try:
+        found = (*pose_of(message.pose.pose), *twist_of(message.twist.twist))
+    except InputError as error:
+        return str(error)
+    return found if all(map(math.isfinite, found)) else "the odometry is not finite"
+
+
+def _note(
+    found: list[tuple[float, Any]],
+    refused: dict[str, list[str]],
+    topic: str,
+    time: float,
+    read: Any,
+) -> None:
+    """Keep what was read from a message, or in words why it was refused."""
+    if isinstance(read, str):
+        refused.setdefault(topic, []).append(read)
+    else:
+        found.append((time, read))
 
 
 def _robot_in(words: str) -> Robot | None:

@@ -1,0 +1,24 @@
+"""Compiling or loading the kernels of the default planners."""
+
+import functools
+
+import numpy as np
+
+from dynastar.grid import OccupancyGrid
+from dynastar.planning.planner import plan
+from dynastar.planning.search import SearchGrid
+
+
+@functools.cache
+def warm_up_default() -> None:
+    """Compile or load the kernels of the default planners, of a way out and of replanning."""
+    rng = np.random.default_rng(0)
+    blocked = rng.random((30, 30)) < 0.3
+    blocked[[0, -1]] = blocked[:, [0, -1]] = False  # so many corners, and yet a way round
+    grid = OccupancyGrid(100 * blocked.astype(np.int8), 1.0)
+    for planner in "improved", "auto":
+        plan(grid, (0.5, 0.5), (29.5, 29.5), planner, explored=True)
+    search = SearchGrid(blocked)
+    row, column = map(int, search.search((0, 0), (29, 29), "auto").cells[3])
+    search.update(row, column, [[True]])
+    search.search((0, 0), (29, 29), "auto")
