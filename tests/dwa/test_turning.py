@@ -32,7 +32,7 @@ def room_to_turn(scene, robot, pose, angle, spare=0.0, short_by=0.0):
 
 
 @given(st.sampled_from([CART, JACKAL]), st.integers(0, 10**6), st.floats(-6.3, 6.3))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 def test_there_is_room_if_and_only_if_the_footprint_keeps_clear_all_the_way_round(
     robot, seed, angle
 ):

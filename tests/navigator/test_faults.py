@@ -16,7 +16,9 @@ from dynastar.navigator.braking import Commands
 from dynastar.scan import LaserScan
 from dynastar.simulation import drive
 
-MISSIONS = [m for m in faults.missions(Options()) if m.spec.fraction == 0.4]
+# Each fault with one of the two robots in turn; ``dynastar bench faults`` has all.
+HALF_WAY = [m for m in faults.missions(Options()) if m.spec.fraction == 0.4]
+MISSIONS = [m for n, m in enumerate(HALF_WAY) if n % 2 == n // 2 % 2]
 
 
 @pytest.mark.parametrize("mission", MISSIONS, ids=lambda m: f"{m.spec.case.name}-{m.spec.robot}")
