@@ -161,6 +161,12 @@ def test_moving_obstacles_count_while_they_are_there():
     assert measure(episode(np.zeros((4, 2)))).nearest is None
 
 
+def test_a_moving_obstacle_that_jumps_is_nowhere_between():
+    path = np.array([[-9.0, 0.0], [-8.0, 0.0], [8.0, 0.0], [7.0, 0.0]])
+    made = episode(np.zeros((4, 2)), movers=path[:, None], mover_radii=np.array([0.2]))
+    assert measure(made).nearest == pytest.approx(6.5)
+
+
 def test_goals_count_in_order():
     line = [(0, 0), (2, 0), (4, 0)]
     goals = np.array([[2.0, 0.1], [4.0, 0.0], [9.0, 9.0]])

@@ -16,6 +16,8 @@ Floats = npt.NDArray[np.float64]
 
 CLOSE, LESS_CLOSE = 0.2, 0.45  # m, gaps that a person may find too small
 GAP_STEP = 0.05  # s, the longest time between two gaps to moving obstacles
+JUMP_SPEED = 6.0  # m/s; a moving obstacle that is faster between two ticks has jumped
+LEAST_JUMP = 0.3  # m
 
 
 class Metrics(NamedTuple):
@@ -147,7 +149,8 @@ def goals_reached(episode: Episode) -> int:
 def mover_gaps(episode: Episode) -> Floats:
     """Gap (n,) in m from the footprint to the nearest moving obstacle, at most 0.05 s apart.
 
-    It is inf where there is none, and 0 in contact. Poses and positions are linear between the ticks.
+    It is inf where there is none, and 0 in contact. Poses and positions are linear between the ticks,
+    but for an obstacle that jumps (``jumped``), which is where it was at the nearer tick.
     """
     driven = episode.trajectory
     if len(driven.times) == 0:
@@ -159,13 +162,27 @@ def mover_gaps(episode: Episode) -> Floats:
     cos, sin = np.cos(theta), np.sin(theta)
     nearest = np.full(len(times), np.inf)
     for places, radius in zip(episode.movers.swapaxes(0, 1), episode.mover_radii, strict=True):
-        dx, dy = (
-            np.interp(times, driven.times, column) - here
-            for column, here in zip(places.T, (x, y), strict=True)
-        )
+        dx, dy = _between(driven.times, places, times).T - (x, y)
         ahead, left = cos * dx + sin * dy, cos * dy - sin * dx
         nearest = np.fmin(nearest, _footprint_gaps(episode, ahead, left) - radius)
     return np.maximum(nearest, 0.0)
+
+
+def jumped(ticks: Floats, places: Floats) -> npt.NDArray[np.bool_]:
+    """Whether a moving obstacle (n, 2), m, has jumped between each two ticks (n,), s, and not moved."""
+    steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    return steps > np.maximum(JUMP_SPEED * np.diff(ticks), LEAST_JUMP)
+
+
+def _between(ticks: Floats, places: Floats, times: Floats) -> Floats:
+    """Where a moving obstacle (n, 2) is at ``times`` (k,) between ticks (n,); NaN while it is absent."""
+    if len(ticks) < 2:
+        return places[np.zeros(len(times), np.intp)]
+    leg = np.clip(np.searchsorted(ticks, times, side="right") - 1, 0, len(ticks) - 2)
+    part = (times - ticks[leg]) / (ticks[leg + 1] - ticks[leg])
+    part = np.where(jumped(ticks, places)[leg], np.rint(part), part)[:, None]
+    between = places[leg] + part * (places[leg + 1] - places[leg])
+    return np.where(part == 0.0, places[leg], np.where(part == 1.0, places[leg + 1], between))
 
 
 def fraction_within(gaps: Floats, distance: float) -> float | None:

@@ -80,6 +80,8 @@ def test_a_contact_is_no_success_and_a_right_word_is_one():
         ({"number": 7}, r"only the first file has 2 \(repeat 0, seed 0\)"),
         ({"seed": 1}, "do not match"),
         ({"repeat": 1}, "do not match"),
+        ({"group": "hard"}, "is of"),
+        ({"file": "b.toml"}, "is of"),
     ],
 )
 def test_missions_that_do_not_match_are_refused(change, said):
@@ -148,7 +150,8 @@ def test_files_of_one_suite_and_of_all_are_read(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "text", ["{", "[]", "{}", '{"suites": {}}', '{"suite": "a", "rows": [1]}', '{"rows": [{}]}', '"x"']
+    "text", ["{", "[]", "{}", '{"suites": {}}', '{"suite": "a", "rows": [1]}', '{"rows": [{}]}', '"x"',
+     '{"suite": "a", "rows": [{"number": 1, "outcome": "arrived", "time": "3"}]}']
 )  # fmt: skip
 def test_files_that_are_none(tmp_path, text):
     file = tmp_path / "file.json"

@@ -1,6 +1,6 @@
 import json
 
-from dynastar.bench.rows import collect
+from dynastar.bench.rows import collect, drop_rows
 
 SETTINGS = {"table": 1, "seed": 0}
 calls = []
@@ -45,3 +45,13 @@ def test_a_line_that_was_cut_off_is_made_again(tmp_path):
     lines = [json.loads(line) for line in file.read_text().splitlines()]
     assert lines[0] == SETTINGS
     assert len(lines) == 5
+
+
+def test_rows_that_are_dropped_are_made_again(tmp_path):
+    file = tmp_path / "rows.jsonl"
+    drop_rows(file, lambda row: True)
+    assert not file.exists()
+    jobs = [("a", n) for n in range(4)]
+    made(file, jobs)
+    drop_rows(file, lambda row: row["square"] > 3)
+    assert made(file, jobs) == 2

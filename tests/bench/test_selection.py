@@ -32,7 +32,23 @@ def test_select_is_a_slice(text: str, expected: list[int]) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["", "a", "1:2:0", "1:2:-1", "-3", "-3:2", "1:2:3:4", "1.5", ":-2", "3,", "3,-1", "1,2:5"],
+    [
+        "",
+        "a",
+        "1:2:0",
+        "1:2:-1",
+        "-3",
+        "-3:2",
+        "1:2:3:4",
+        "1.5",
+        ":-2",
+        "3,",
+        "3,-1",
+        "1,2:5",
+        "0:99999999999999999999",
+        "1000000",
+        "2000000:",
+    ],
 )
 def test_select_that_is_none(text: str) -> None:
     with pytest.raises(InputError, match="--select"):

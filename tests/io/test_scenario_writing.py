@@ -119,4 +119,7 @@ def test_what_no_file_can_hold_is_refused_and_nothing_is_written(tmp_path):
     ):
         with pytest.raises(ScenarioError, match="cannot have"):
             io.save_scenario(scenario, tmp_path)
+    long = Mover(0.2, np.arange(9000.0), np.random.default_rng(0).uniform(1.0, 2.0, (9000, 2)))
+    with pytest.raises(ScenarioError, match="at most 262144 are read"):
+        io.save_scenario(replace(made, movers=(long,)), tmp_path)
     assert list(tmp_path.iterdir()) == []

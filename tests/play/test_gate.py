@@ -25,6 +25,7 @@ def test_a_page_of_this_machine_gets_in(host):
         {"host": "127.0.0.1:notaport"},
         {"host": "127.0.0.1:80", "origin": "http://evil.example"},
         {"host": "127.0.0.1:80", "origin": "null"},
+        {"host": "127.0.0.1:80", "origin": "http://["},
         {"host": "127.0.0.1:80", "origin": "http://127.0.0.1:9999"},
         {},
     ],

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from dynastar.bench.statistics import bootstrap, lost_and_gained, mcnemar, pairs_needed
+from dynastar.config import shown
 from dynastar.errors import InputError
 from dynastar.io.files import MAX_TEXT_BYTES, read_bytes
 
@@ -49,12 +50,11 @@ def load_result(file: str | Path) -> dict[str, Result]:
         data = json.loads(read_bytes(path, MAX_TEXT_BYTES, InputError))
     except ValueError:
         raise InputError(f"{path}: this is not JSON") from None
-    suites = data.get("suites", {data.get("suite"): data}) if isinstance(data, dict) else {}
-    for result in suites.values() if isinstance(suites, dict) else [None]:
-        if not (isinstance(result, dict) and _is_rows(result.get("rows"))):
-            suites = {}
-            break
-    if not suites:
+    suites = data.get("suites", {str(data.get("suite")): data}) if isinstance(data, dict) else {}
+    whole = isinstance(suites, dict) and all(
+        isinstance(result, dict) and _is_rows(result.get("rows")) for result in suites.values()
+    )
+    if not (suites and whole):
         raise InputError(
             f"{path}: expected the --json-out of `dynastar bench SUITE` or `bench all`"
         )
@@ -154,13 +154,21 @@ def _paired(name: str, first: Sequence[Row], second: Sequence[Row]) -> list[tupl
     for these, others, which in ((left, right, "first"), (right, left, "second")):
         missing = [mission for mission in these if mission not in others]
         if missing:
-            shown = ", ".join(map(_words, missing[:SHOWN]))
+            named = ", ".join(map(_words, missing[:SHOWN]))
             more = f" and {len(missing) - SHOWN} more" if len(missing) > SHOWN else ""
             raise InputError(
-                f"the missions of {name} do not match: only the {which} file has {shown}{more}; run "
+                f"the missions of {name} do not match: only the {which} file has {named}{more}; run "
                 "both with the same --missions, --select, --repeat and --seed"
             )
-    return [(left[mission], right[mission]) for mission in left]
+    pairs = [(left[mission], right[mission]) for mission in left]
+    for a, b in pairs:
+        for key in ("file", "group"):
+            if a.get(key) != b.get(key):
+                raise InputError(
+                    f"the missions of {name} do not match: {_words(_mission(a))} is of {shown(a.get(key))} "
+                    f"in the first file and of {shown(b.get(key))} in the second"
+                )
+    return pairs
 
 
 def _mission(row: Row) -> tuple[int, int, int]:
@@ -186,9 +194,17 @@ def _difference(pairs: Sequence[tuple[Row, Row]], key: str) -> dict[str, Any]:
 
 
 def _is_rows(rows: Any) -> bool:
-    return isinstance(rows, list) and all(
-        isinstance(row, dict) and isinstance(row.get("number"), int) and "outcome" in row
-        for row in rows
+    return isinstance(rows, list) and all(isinstance(row, dict) and _is_row(row) for row in rows)
+
+
+def _is_row(row: Row) -> bool:
+    counts = (row.get(key, 0) for key in ("number", "repeat", "seed"))
+    values = (row.get(key) for key in ("time", "length"))
+    return (
+        "number" in row
+        and isinstance(row.get("outcome"), str)
+        and all(type(count) is int for count in counts)
+        and all(value is None or type(value) in (int, float) for value in values)
     )
 
 

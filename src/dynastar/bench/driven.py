@@ -68,7 +68,7 @@ def asked(scenario: Scenario, options: Options, repeat: int) -> Scenario:
     """The scenario with the preset, seed, settings, attention and legs that the options ask for."""
     return replace(
         scenario,
-        preset=cast(Any, options.preset),
+        preset=cast(Any, options.preset or scenario.preset),
         seed=scenario.seed + options.seed + repeat,
         navigator=merged(scenario.navigator, options.settings),
         attention=options.attention or scenario.attention,

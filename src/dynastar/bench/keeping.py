@@ -7,6 +7,7 @@ from typing import Any
 
 from dynastar.bench.missions import Mission, Options, Suite
 from dynastar.bench.runner import Job, run_job
+from dynastar.bench.selection import MOST
 from dynastar.bench.statistics import succeeded
 from dynastar.episode import Episode
 from dynastar.errors import DynastarError, InputError
@@ -70,7 +71,7 @@ def mission_numbered(name: str, suite: Suite, options: Options, number: int) -> 
     """The mission of a number; InputError if the suite does not have it, leaves it out, or drives none."""
     if not hasattr(suite, "scenario"):
         raise InputError(f"the suite {name} drives nothing: there is nothing to replay")
-    missions = suite.missions(options._replace(select=str(number)))
+    missions = suite.missions(options._replace(select=str(number))) if number < MOST else ()
     mission = next((m for m in missions if m.number >= number), None)
     if mission is None or mission.number != number:
         raise InputError(f"the suite {name} has no mission {number}")

@@ -22,7 +22,8 @@ class Mission(NamedTuple):
 class Options(NamedTuple):
     """Options of a suite from the command line; all of them reach the worker processes.
 
-    ``settings`` are the navigator's, as nested tables, over the preset's. ``observe`` is called with
+    ``preset`` is "" for that of each mission's scenario. ``settings`` are the navigator's, as nested
+    tables, over the preset's. ``observe`` is called with
     the suite's name and each mission that is driven, its repeat, its episode and its row.
     ``attention`` is that of scripted walkers, None for the suite's own; ``legs`` shows their legs alone.
     """
@@ -32,7 +33,7 @@ class Options(NamedTuple):
     repeat: int = 1
     select: str | None = None
     seed: int = 0
-    preset: str = "default"
+    preset: str = ""
     workers: Workers = 1
     ideal: bool = False
     controller: str = "navigator"
@@ -48,8 +49,9 @@ class Suite(Protocol):
 
     A suite that drives also has ``scenario(mission, options, repeat)``, the Scenario of a mission. It
     may have ``QUICK_MISSIONS``, how many missions ``--quick`` runs, ``PUBLISHED``, tuples of a label, a
-    figure in words and the key of its source, ``COMPARABLE``, what is comparable in a sentence, and
-    ``ATTENTION``, that of its scripted walkers where it is not "none".
+    figure in words and the key of its source, ``COMPARABLE``, what is comparable in a sentence,
+    ``ATTENTION``, that of its scripted walkers where it is not "none", and ``source_of(mission)``, a
+    string that changes with the file that a mission is read from.
     """
 
     @property

@@ -26,13 +26,12 @@ def collect(
     settings first, then each row with its job. Other settings, or a file that is none of ours, begin
     anew; a line that was damaged or cut off in writing is dropped.
     """
-    done = _kept(file, settings)
+    first, done = _read(file)
+    if first != jsonable(settings):
+        done = {}
     keys = [_key(job) for job in jobs]
     left = [(key, job) for key, job in zip(keys, jobs, strict=True) if key not in done]
-    lines = [settings, *({"job": json.loads(key), "row": row} for key, row in done.items())]
-    with written_aside(file) as aside:
-        text = "".join(json.dumps(jsonable(line)) + "\n" for line in lines)
-        aside.write_text(text, encoding="utf-8")
+    _write(file, settings, done)
     begun = len(jobs) - len(left)
     shown = progress_bar(
         total=len(jobs), initial=begun, desc=name, disable=not progress, delay=1e-6
@@ -51,24 +50,35 @@ def collect(
     return [done[key] for key in keys]
 
 
+def drop_rows(file: Path, unwanted: Callable[[dict[str, Any]], bool]) -> None:
+    """Take out of a file that ``collect`` has begun the rows that are to be made again."""
+    first, done = _read(file)
+    if any(map(unwanted, done.values())):
+        _write(file, first, {key: row for key, row in done.items() if not unwanted(row)})
+
+
 def _key(job: Any) -> str:
     return json.dumps(jsonable(getattr(job, "key", job)))
 
 
-def _kept(file: Path, settings: dict[str, Any]) -> dict[str, dict[str, Any]]:
+def _read(file: Path) -> tuple[Any, dict[str, dict[str, Any]]]:
+    """The settings of a file, None where it is none of ours, and its rows by the key of their job."""
     if not file.exists() or file.stat().st_size == 0:
-        return {}
-    first, *lines = (
-        read_bytes(file, MAX_TEXT_BYTES, InputError).decode(errors="replace").split("\n")
-    )
-    if _parsed(first) != jsonable(settings):
-        return {}
-    entries = [_parsed(line) for line in lines]
-    return {
+        return None, {}
+    text = read_bytes(file, MAX_TEXT_BYTES, InputError).decode(errors="replace")
+    first, *entries = map(_parsed, text.split("\n"))
+    return first, {
         _key(entry["job"]): entry["row"]
         for entry in entries
         if isinstance(entry, dict) and "job" in entry and isinstance(entry.get("row"), dict)
     }
+
+
+def _write(file: Path, settings: Any, done: dict[str, dict[str, Any]]) -> None:
+    lines = [settings, *({"job": json.loads(key), "row": row} for key, row in done.items())]
+    with written_aside(file) as aside:
+        text = "".join(json.dumps(jsonable(line)) + "\n" for line in lines)
+        aside.write_text(text, encoding="utf-8")
 
 
 def _parsed(line: str) -> Any:

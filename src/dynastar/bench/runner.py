@@ -10,36 +10,43 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from dynastar.bench.missions import Mission, Options, Suite, row_of
-from dynastar.bench.rows import collect
+from dynastar.bench.rows import collect, drop_rows
 from dynastar.bench.selection import choose_missions
-from dynastar.bench.statistics import totals
+from dynastar.bench.statistics import succeeded, totals
 from dynastar.bench.suites import SUITES, load_suite
 from dynastar.bench.versions import code_version, controller_version
 
 
 class Job(NamedTuple):
-    """A mission to run once by a controller: the suite by name, or itself where it has none."""
+    """A mission to run once by a controller: the suite by name, or itself where it has none.
+
+    ``source`` identifies what the mission is read from, where its number does not.
+    """
 
     suite: str | Suite
     mission: Mission
     repeat: int
     controller: str
+    source: str = ""
 
     @property
-    def key(self) -> tuple[str, int, int, str]:
+    def key(self) -> tuple[str, int, int, str, str]:
         """Values that identify the job."""
         name = self.suite if isinstance(self.suite, str) else ""
-        return (name, self.mission.number, self.repeat, self.controller)
+        return (name, self.mission.number, self.repeat, self.controller, self.source)
 
 
 def jobs_of(name: str, suite: Suite, options: Options) -> tuple[list[Job], Counter[str]]:
     """The jobs of a suite, in the missions' order, and how many missions were left out, by reason."""
     chosen, skipped = choose_missions(suite, options)
     known = name if name in SUITES else suite
-    repeats = range(options.repeat)
-    return [
-        Job(known, m, repeat, options.controller) for m in chosen for repeat in repeats
-    ], skipped
+    source_of = getattr(suite, "source_of", lambda _: "")
+    jobs = [
+        Job(known, mission, repeat, options.controller, source_of(mission))
+        for mission in chosen
+        for repeat in range(options.repeat)
+    ]
+    return jobs, skipped
 
 
 def run_suite(
@@ -71,6 +78,8 @@ def run_jobs(
     work = partial(_timed, options)
     with tempfile.TemporaryDirectory() as folder:
         file = keep or Path(folder) / "rows.jsonl"
+        if options.observe is not None:  # of failures, which are observed only as they are driven
+            drop_rows(file, lambda row: not succeeded(row))
         rows = collect(name, work, jobs, file, settings, options.workers, progress)
     times = [row.pop("cpu_s") for row in rows]
     return rows, times
@@ -88,7 +97,8 @@ def result_of(
     published = getattr(suite, "PUBLISHED", ())
     return {
         "suite": name,
-        **{key: getattr(options, key) for key in ("preset", "seed", "ideal", "controller", "legs")},
+        "preset": ", ".join(sorted({row["preset"] for row in rows})) or "default",
+        **{key: getattr(options, key) for key in ("seed", "ideal", "controller", "legs")},
         "attention": options.attention or getattr(suite, "ATTENTION", "none"),
         "settings": dict(options.settings),
         **{key: round(value, 1) for key, value in seconds.items()},
@@ -122,4 +132,4 @@ def run_job(options: Options, job: Job) -> dict[str, Any]:
     options = options._replace(controller=job.controller, observe=observe)
     row = row_of(lambda: suite.run_mission(job.mission, options, job.repeat))
     again = {"number": job.mission.number, "repeat": job.repeat, "seed": options.seed + job.repeat}
-    return {**again, "preset": options.preset, **row}
+    return {**again, "preset": options.preset or "default", **row}

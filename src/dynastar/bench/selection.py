@@ -15,6 +15,7 @@ from dynastar.config import shown
 from dynastar.errors import InputError
 
 REPORT_SEEDS = 10_000  # the first seed that is for published tables only
+MOST = 1_000_000  # above all numbers of missions that may be asked for
 ABSENT = "the suite has no mission of this number"
 
 
@@ -51,11 +52,11 @@ def parse_select(text: str) -> Slice | Listed:
     try:
         if len(parts) == 1:
             listed = Listed(tuple(sorted({int(part) for part in text.split(",")})))
-            if listed.numbers[0] >= 0:
+            if listed.numbers[0] >= 0 and listed.numbers[-1] < MOST:
                 return listed
         numbers = [int(part) if part.strip() else None for part in parts]
         start, stop, step = (*numbers, None, None)[:3]
-        if 2 <= len(parts) <= 3 and (start or 0) >= 0 and (stop or 0) >= 0:
+        if 2 <= len(parts) <= 3 and 0 <= (start or 0) < MOST and 0 <= (stop or 0) <= MOST:
             chosen = Slice(start or 0, stop, 1 if step is None else step)
             if chosen.step >= 1:
                 return chosen
@@ -63,7 +64,7 @@ def parse_select(text: str) -> Slice | Listed:
         pass
     raise InputError(
         f"--select {shown(text)}: expected A:B:C (from A, below B, every C-th), N or N,N,N, "
-        "none negative"
+        f"none negative or {MOST} and more"
     )
 
 

@@ -81,7 +81,7 @@ def _add_missions(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="of what is drawn at random (default 0); from 10000 on for published tables only",
     )
-    parser.add_argument("--preset", choices=PRESETS, default="default")
+    parser.add_argument("--preset", choices=PRESETS, help="default: that of the scenarios")
     parser.add_argument(
         "--ideal", action="store_true", help="without range noise and without latency"
     )
@@ -147,10 +147,10 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.suite == "all":
         return _run_all(arguments)
     choose(arguments.suite, {**SUITES, **COMMANDS}, "suite")
-    options = _options(arguments)
     if arguments.replay is not None:
-        return _replay(arguments, options)
-    return _run(arguments, options)
+        _refuse_replayed(arguments)
+        return _replay(arguments, _options(arguments))
+    return _run(arguments, _options(arguments))
 
 
 def _run(arguments: argparse.Namespace, options: "Options") -> int:
@@ -261,16 +261,29 @@ def _options(arguments: argparse.Namespace) -> "Options":
         repeat=arguments.repeat,
         select=arguments.select,
         seed=arguments.seed,
-        preset=arguments.preset,
+        preset=arguments.preset or "",
         workers=arguments.dask or arguments.workers or os.cpu_count() or 1,
         ideal=arguments.ideal,
         controller=controller,
-        settings=read_settings(arguments.set, arguments.preset),
+        settings=read_settings(arguments.set, arguments.preset or "default"),
         quick=arguments.quick,
         attention=arguments.attention,
         legs=arguments.legs,
         observe=observe,
     )
+
+
+def _refuse_replayed(arguments: argparse.Namespace) -> None:
+    """Refuses options that say which missions are run, beside --replay."""
+    asked = {
+        "--select": arguments.select is not None,
+        "--missions": arguments.missions is not None,
+        "--repeat": arguments.repeat != 1,
+        "--quick": arguments.quick,
+        "--save-failures": arguments.save_failures is not None,
+    }
+    for option in (name for name, given in asked.items() if given):
+        raise InputError(f"{option} has no effect with --replay, which runs one mission")
 
 
 def _refuse_driving(arguments: argparse.Namespace) -> None:

@@ -93,7 +93,7 @@ def execute(arguments: argparse.Namespace) -> int:
 
     require("bench", "the tables and figures need")
     file = check_file("--json-out", arguments.json_out)
-    if arguments.set and arguments.what in ("table1", "clutter", "figures"):
+    if arguments.set and arguments.what in ("table1", "clutter", "figures", "presets"):
         raise InputError(
             f"--set has no effect: {arguments.what} does not run a navigator to be set"
         )

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from dynastar.errors import ScenarioError
 from dynastar.extras import require
 from dynastar.grid import OccupancyGrid
-from dynastar.io.files import written_aside
+from dynastar.io.files import MAX_TABLE_BYTES, written_aside
 from dynastar.io.maps import save_map
 from dynastar.io.paths import local_path
 from dynastar.robot import ROBOTS, Robot
@@ -26,7 +26,8 @@ def save_scenario(scenario: Scenario, folder: str | Path) -> Path:
     """Writes a scenario as ``scenario.toml`` and its maps into a folder; returns the TOML's path.
 
     Speed limits are kept to one part in a hundred of the robot's top speed. Raises ScenarioError for
-    pedestrians who react and for faults, which no scenario file can have, and MissingPackage.
+    pedestrians who react and for faults, which no scenario file can have, and for one that would be
+    too large to be read again; and MissingPackage.
     """
     require("play", "writing scenarios needs")
     import tomli_w
@@ -35,21 +36,29 @@ def save_scenario(scenario: Scenario, folder: str | Path) -> Path:
         what = "pedestrians who react" if scenario.crowd else "faults"
         raise ScenarioError(f"a scenario file cannot have {what}")
     folder = local_path(folder, ScenarioError)
-    table = _table(scenario, folder)
+    maps: dict[str, OccupancyGrid] = {}
+    text = tomli_w.dumps(_table(scenario, maps)).encode()
+    if len(text) > MAX_TABLE_BYTES:
+        raise ScenarioError(
+            f"the scenario file would have {len(text)} bytes, of which at most {MAX_TABLE_BYTES} are "
+            "read: leave out obstacles, or walkers with long tracks"
+        )
+    for name, grid in maps.items():
+        save_map(grid, folder / name)
     with written_aside(folder / FILE, ScenarioError) as aside:
-        aside.write_text(tomli_w.dumps(table), encoding="utf-8")
+        aside.write_bytes(text)
     return folder / FILE
 
 
-def _table(scenario: Scenario, folder: Path) -> dict[str, Any]:
-    """The scenario as TOML has it; writes the maps."""
+def _table(scenario: Scenario, maps: dict[str, OccupancyGrid]) -> dict[str, Any]:
+    """The scenario as TOML has it; its maps are added to ``maps`` by the names of their files."""
     grid, robot = scenario.grid, scenario.robot
-    table: dict[str, Any] = {"name": scenario.name, "map": _saved(grid, folder, "map")}
+    table: dict[str, Any] = {"name": scenario.name, "map": _named(grid, maps, "map")}
     if scenario.world is not None:
-        table["world"] = _saved(scenario.world, folder, "world")
+        table["world"] = _named(scenario.world, maps, "world")
     if grid.keepout is not None:
         mask = OccupancyGrid(np.where(grid.keepout, 100, 0).astype(np.int8), grid.frame)
-        table["keepout"] = _saved(mask, folder, "keepout")
+        table["keepout"] = _named(mask, maps, "keepout")
     for key in ("time_limit", "latency", "goal_tolerance", "heading_tolerance", "seed"):
         table[key] = getattr(scenario, key)
     table |= {"unknown": scenario.unknown, "preset": scenario.preset}
@@ -66,7 +75,7 @@ def _table(scenario: Scenario, folder: Path) -> dict[str, Any]:
             np.isfinite(grid.speed_limit), np.maximum(np.rint(100.0 * share), 1.0), 0.0
         )
         mask = OccupancyGrid(values.astype(np.int8), grid.frame)
-        name = _saved(mask, folder, "speed_limit")
+        name = _named(mask, maps, "speed_limit")
         table["speed_limit"] = {"mask": name, "base": 0.0, "multiplier": 1.0}
     if scenario.navigator:
         table["navigator"] = _plain(scenario.navigator)
@@ -76,10 +85,9 @@ def _table(scenario: Scenario, folder: Path) -> dict[str, Any]:
     return table
 
 
-def _saved(grid: OccupancyGrid, folder: Path, name: str) -> str:
-    """Writes a map's values; returns the name of its file."""
-    bare = OccupancyGrid(grid.values, grid.frame)
-    save_map(bare, folder / f"{name}.yaml")
+def _named(grid: OccupancyGrid, maps: dict[str, OccupancyGrid], name: str) -> str:
+    """Adds a map's values to ``maps``; returns the name of its file."""
+    maps[f"{name}.yaml"] = OccupancyGrid(grid.values, grid.frame)
     return f"{name}.yaml"
 
 

@@ -99,11 +99,11 @@ def _trace(trace: Trace) -> dict[str, Any]:
     return {
         "candidates": packed(trace.candidates, np.float32),
         "refused": packed(trace.refused, np.uint8),
-        "candidateRows": packed(trace.candidate_rows, np.uint16),
+        "candidateRows": packed(trace.candidate_rows, np.int32),
         "terms": packed(trace.terms, np.float32),
         "chosen": packed(trace.chosen, np.float32),
         "tracks": packed(trace.tracks, np.float32),
-        "trackRows": packed(trace.track_rows, np.uint16),
+        "trackRows": packed(trace.track_rows, np.int32),
         "reasons": words(trace.reasons),
         "seen": packed(trace.seen, np.int32),
         "seenFrame": list(trace.seen_frame),

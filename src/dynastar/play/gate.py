@@ -25,7 +25,7 @@ class Gate:
         if self.loopback and not _local(host, self.port):
             return "the host is not this machine"
         origin = headers.get("origin")
-        if origin is not None and urlsplit(origin).netloc != host:
+        if origin is not None and _host_of(origin) != host:
             return "another site may not talk to this server"
         given = token.encode("utf-8", "replace")
         if self.token and not secrets.compare_digest(given, self.token.encode()):
@@ -67,3 +67,11 @@ def _local(host: str, port: int) -> bool:
         return is_loopback(parts.hostname or "") and (parts.port or 80) == port
     except ValueError:
         return False
+
+
+def _host_of(origin: str) -> str | None:
+    """The host and port of an origin; None if it is none."""
+    try:
+        return urlsplit(origin).netloc
+    except ValueError:
+        return None

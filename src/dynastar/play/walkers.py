@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
 from dynastar.simulation import Mover
 from dynastar.simulation.movers import Movers
-from dynastar.simulation.scenario import AfterLast
 
 Floats = npt.NDArray[np.float64]
 Gaps = Callable[[Floats], Floats]  # metres from points (n, 2) to what stands
@@ -49,19 +49,23 @@ def gone(radius: float) -> Mover:
 
 
 def from_now(mover: Mover, now: float, rest: float) -> Mover | None:
-    """The mover as it goes on for ``rest`` (s) from ``now`` (s), which becomes 0; None if it is gone."""
+    """The mover as it goes on from ``now`` (s), which becomes 0; None if it is gone.
+
+    One that goes round and round does so from there; of others the next ``rest`` s are kept.
+    """
     movers = Movers([mover])
     times, points = np.asarray(mover.times, np.float64), np.asarray(mover.points, np.float64)
-    span = times[-1] - times[0]
+    span, after = times[-1] - times[0], mover.after
+    if now <= times[0]:
+        return replace(mover, times=times - now)
     if mover.after in ("loop", "back_and_forth") and span > 0.0:
         if mover.after == "back_and_forth":
             times, span = np.concatenate([times, 2.0 * times[-1] - times[-2:0:-1]]), 2.0 * span
             points = np.vstack([points, points[-2:0:-1]])
         else:  # it jumps from the last key to the first
             times = np.append(times[:-1], times[-1] - min(JUMP, 0.5 * (times[-1] - times[-2])))
-        rounds = np.arange(
-            max(0.0, (now - times[0]) // span), (now + rest - times[0]) // span + 1.0
-        )
+        rest, after = span, "loop"
+        rounds = (now - times[0]) // span + np.arange(2.0)
         times = (times + span * rounds[:, None]).ravel()
         points = np.tile(points, (len(rounds), 1))
     # A jump at ``now`` is over, on whichever side rounding puts it.
@@ -71,7 +75,6 @@ def from_now(mover: Mover, now: float, rest: float) -> Mover | None:
     there = np.isfinite(points[:, 0])
     if not there.any():
         return None
-    after: AfterLast = "vanish" if mover.after == "vanish" else "stay"
     return Mover(mover.radius, times[there] - now, points[there], after)
 
 

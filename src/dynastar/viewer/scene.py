@@ -8,13 +8,12 @@ import numpy.typing as npt
 
 from dynastar.episode import Episode, PlanRecord
 from dynastar.grid import GridFrame
-from dynastar.metrics import Metrics
+from dynastar.metrics import Metrics, jumped
 from dynastar.path import Path
 from dynastar.terminal import printable
 
 Floats = npt.NDArray[np.float64]
 
-JUMP_SPEED = 6.0  # m/s; a mover that is faster between two ticks has jumped
 MOST_POINTS = 1000  # that a line is looked at in
 
 
@@ -137,8 +136,7 @@ def track_dots(track: Floats, ticks: Floats, spacing: float) -> Floats:
 
 def _legs(track: Floats, ticks: Floats) -> list[Floats]:
     there = np.isfinite(track.sum(axis=1))
-    steps = np.linalg.norm(np.diff(track, axis=0), axis=1)
-    walked = there[1:] & (steps <= np.maximum(JUMP_SPEED * np.diff(ticks), 0.3))
+    walked = there[:-1] & there[1:] & ~jumped(ticks, track)
     broken = np.flatnonzero(~walked)
     legs = np.split(track, broken + 1)
     return [leg for leg in legs if np.isfinite(leg).all() and len(leg)]

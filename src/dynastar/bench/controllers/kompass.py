@@ -16,6 +16,7 @@ from dynastar.robot import Robot
 Floats = npt.NDArray[np.float64]
 
 HEIGHT = 0.1  # m, of the obstacles' points; the robot's body is taller
+LEAST_STEP = 0.06  # m/s of a step from rest, from which on the library finds samples
 
 
 class Settings(NamedTuple):
@@ -113,7 +114,9 @@ def _planner(robot: Robot, options: Settings) -> tuple[Any, Any]:
         geometry_type=kind,
         geometry_params=np.array(size),
     )
-    linear = models.LinearCtrlLimits(limits.v_max, limits.v_accel, limits.v_brake)
+    # It samples nothing that one step from rest does not reach; ``_ramped`` keeps to the robot's own.
+    accel = max(limits.v_accel, LEAST_STEP / options.step)
+    linear = models.LinearCtrlLimits(limits.v_max, accel, limits.v_brake)
     angular = models.AngularCtrlLimits(
         math.pi, limits.omega_max, limits.omega_accel, limits.omega_brake
     )

@@ -4,6 +4,7 @@ Each file is driven as it is: its own noise, latency, preset and settings. Files
 a mission's group is its subfolder.
 """
 
+import hashlib
 import os
 from collections.abc import Iterator
 from pathlib import Path
@@ -40,12 +41,18 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
     return load_scenario(file)
 
 
+def source_of(mission: Mission) -> str:
+    """Name and digest of a mission's file."""
+    file, _ = mission.spec
+    return f"{file} {hashlib.sha256(file.read_bytes()).hexdigest()}"
+
+
 def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:
     """Drives a scenario; its row also has the file's name."""
     file, group = mission.spec
     made = scenario(mission, options, repeat)
     row = driven.run_mission(made, options, mission, repeat, group=str(group))
-    return {**row, "file": file.name}
+    return {**row, "file": file.name, "preset": options.preset or made.preset}
 
 
 def _folder(options: Options) -> Path:
