@@ -62,3 +62,11 @@ def test_inflation_leaves_its_argument_alone():
     for radius in (0.0, 1.5):
         inflate(blocked, radius)[:] = True
     assert (blocked == np.eye(4)).all()
+
+
+def test_a_radius_far_beyond_the_map_takes_no_room():
+    blocked = np.zeros((20, 30), bool)
+    assert inflate(blocked, 1e5).all()
+    assert not inflate(blocked, 1e5, outside_blocked=False).any()
+    blocked[3, 4] = True
+    assert inflate(blocked, 1e5, outside_blocked=False).all()

@@ -59,6 +59,8 @@ SAID = [
     ("plan pipe/map.txt --start 1 1 --goal 2 2", "not a regular file"),
     ("run pipe/drive.toml", "not a regular file"),
     ("info nowhere.yaml", "there is no such file"),
+    ("info room.txt --out -", "expected a file"),
+    ("view some.npz --out -", "expected a file"),
     ("info folder", "this is a folder"),
     ("info loop.yaml", "loop.yaml"),
     ("info room.npz", "there is no such file"),
@@ -144,9 +146,14 @@ def test_what_is_read_is_not_replaced_by_an_output(
         "occupied_thresh: 0.65\nfree_thresh: 0.196\n"
     )
     (folder / "room.toml").write_text('map = "room.yaml"\nstart = [1, 1]\ngoal = [3, 2]\n')
+    image = (folder / "room.png").as_uri()
+    (folder / "room.url.yaml").write_text(
+        f"{{image: '{image}', resolution: 0.1, origin: [0, 0, 0], negate: 0, occupied_thresh: 0.65, "
+        "free_thresh: 0.196}\n"
+    )
     before = (folder / "room.png").read_bytes()
     plan = ["plan", "room.yaml", "--start", "1", "1", "--goal", "3", "2"]
-    for words in (["info", "room.yaml"], ["info", "room.toml"], plan):
+    for words in (["info", "room.yaml"], ["info", "room.toml"], ["info", "room.url.yaml"], plan):
         words = [str(folder / word) if word.startswith("room.") else word for word in words]
         assert main([*words, "--out", str(folder / "room.png")]) == 2
         assert "that is what is read here; name another file" in capsys.readouterr().err

@@ -1,5 +1,6 @@
 """Keep-out zones and speed limits from masks of any resolution."""
 
+import math
 import tracemalloc
 
 import numpy as np
@@ -104,3 +105,11 @@ def test_a_zone_is_what_is_connected_with_a_cell_but_for_obstacles():
     for cell in (2, 2), (0, 0), (5, 5):
         assert zone_around(grid, cell) is None
     assert zone_around(OccupancyGrid(values, 1.0), (1, 1)) is None
+
+
+@pytest.mark.parametrize("size", [1.0, 1.2])
+def test_a_zone_of_a_mask_that_is_turned_and_no_finer_is_kept(size):
+    mask = OccupancyGrid([[100]], GridFrame(size, 3.0, 3.0 - size * math.sqrt(0.5), math.pi / 4))
+    grid = with_keepout(OccupancyGrid(np.zeros((6, 6), np.int8)), mask)
+    assert grid.keepout.sum() >= 1
+    assert grid.keepout[2:5, 2:5].sum() == grid.keepout.sum()

@@ -10,6 +10,7 @@ import pytest
 from dynastar import InputError
 from dynastar.errors import MissingPackage
 from dynastar.metrics import measure
+from dynastar.table import write_csv
 from episodes import episode
 
 EPISODE = episode(7)
@@ -42,6 +43,15 @@ def test_a_result_is_one_row(tmp_path):
 def test_a_file_that_cannot_be_written_is_named(tmp_path):
     with pytest.raises(InputError, match=r"no/ticks.csv: cannot be written: No such file"):
         EPISODE.to_csv(tmp_path / "no" / "ticks.csv")
+
+
+def test_a_file_that_is_cut_off_in_writing_leaves_the_old_one(tmp_path):
+    file = tmp_path / "a.csv"
+    write_csv({"a": [1]}, file)
+    with pytest.raises(ValueError, match="shorter"):
+        write_csv({"a": [1, 2], "b": [1]}, file)
+    assert file.read_text(encoding="utf-8").split() == ["a", "1"]
+    assert [path.name for path in tmp_path.iterdir()] == ["a.csv"]
 
 
 def test_a_data_frame_has_the_columns(monkeypatch):

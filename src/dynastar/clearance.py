@@ -96,7 +96,7 @@ def _inflate_widely(mask: Mask, radius: float, outside_blocked: bool) -> Mask:
     The nearest square is 0.5 to 0.71 cells nearer than the nearest centre. Cells in between are
     compared with all blocked cells that are as far away as that.
     """
-    reach = math.ceil(radius) + 1
+    reach = min(math.ceil(radius), max(mask.shape)) + 1  # what is farther is off the map
     padded = np.pad(mask, reach, constant_values=outside_blocked)
     away = distance_field(padded, 1.0)[reach:-reach, reach:-reach]
     grown = away < radius + 0.5 - ROUNDING

@@ -5,10 +5,12 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.config import shown
 from dynastar.errors import ConfigError, DynastarWarning
 
 LARGE = 5.0  # m, the radius above which a footprint is perhaps not in metres
@@ -46,25 +48,32 @@ class Footprint:
     @staticmethod
     def disc(radius: float) -> "Footprint":
         """A disc of ``radius`` metres."""
-        if not (math.isfinite(radius) and radius >= 0.0):
-            raise ConfigError(f"a footprint's radius is {radius}: expected 0 m or more")
-        return Footprint(_readonly(np.empty((0, 2))), float(radius), float(radius))
+        number = _numbers(radius)
+        if number is None or number.shape != () or not 0.0 <= number < math.inf:
+            raise ConfigError(f"a footprint's radius is {shown(radius)}: expected 0 m or more")
+        return Footprint(_readonly(np.empty((0, 2))), float(number), float(number))
 
     @staticmethod
     def polygon(vertices: Sequence[Sequence[float]]) -> "Footprint":
         """A convex polygon (n >= 3 vertices, metres) that contains the centre of rotation."""
-        points = np.array(vertices, dtype=np.float64)
+        points = _numbers(vertices)
+        if points is None:
+            raise ConfigError(
+                f"a footprint polygon is {shown(vertices)}: expected (n >= 3, 2) metres"
+            )
         if points.ndim != 2 or points.shape[0] < 3 or points.shape[1] != 2:
             raise ConfigError(f"a footprint polygon has shape {points.shape}: expected (n >= 3, 2)")
         if not np.isfinite(points).all():
             raise ConfigError("a footprint polygon has a vertex that is not finite")
+        points = _corners(points)
         edges = np.roll(points, -1, axis=0) - points
         turns = _cross(edges, np.roll(edges, -1, axis=0))
-        if (turns < 0).all():
+        same = len(points) >= 3 and (np.sign(turns) == np.sign(turns[0])).all()
+        if not same or _times_round(edges) != 1:
+            raise ConfigError("a footprint polygon is not convex: give its corners in order")
+        if turns[0] < 0:
             points = points[::-1].copy()
             edges = np.roll(points, -1, axis=0) - points
-        elif not (turns > 0).all():
-            raise ConfigError("a footprint polygon is not convex: give its corners in order")
         inside = _cross(edges, -points) / np.hypot(edges[:, 0], edges[:, 1])
         if inside.min() < 0:
             raise ConfigError("a footprint polygon does not contain the centre of rotation (0, 0)")
@@ -117,6 +126,32 @@ def box(length: float, width: float) -> Footprint:
     """A rectangular footprint, ``length`` along x and ``width`` along y, in metres, centred."""
     x, y = length / 2, width / 2
     return Footprint.polygon([(x, -y), (x, y), (-x, y), (-x, -y)])
+
+
+def _numbers(values: Any) -> npt.NDArray[np.float64] | None:
+    """What was given as an array of floats; None where it is none."""
+    try:
+        if not isinstance(values, str):
+            return np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        pass
+    return None
+
+
+def _times_round(edges: npt.NDArray[np.float64]) -> int:
+    """How often a ring with these edges (n, 2) goes round; a star does so twice."""
+    after = np.roll(edges, -1, axis=0)
+    turned = np.arctan2(_cross(edges, after), (edges * after).sum(axis=1))
+    return round(abs(float(turned.sum())) / math.tau)
+
+
+def _corners(points: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """The corners (k, 2) of a ring (n, 2): without points that are repeated or in the middle of a side."""
+    points = points[(points != np.roll(points, 1, axis=0)).any(axis=1)]
+    before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
+    scale = np.hypot(*before.T) * np.hypot(*after.T)
+    straight = np.abs(_cross(before, after)) <= 1e-9 * scale
+    return points[~(straight & ((before * after).sum(axis=1) > 0.0))]
 
 
 def _cross(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

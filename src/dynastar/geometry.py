@@ -8,6 +8,8 @@ from typing import Any, NamedTuple
 from dynastar.config import shown
 from dynastar.errors import InputError
 
+MOST_HEADING = 7.0  # rad, of a goal: a larger number is likely to be in degrees
+
 
 class Pose2D(NamedTuple):
     """A position in metres and a heading in radians."""
@@ -40,6 +42,11 @@ def as_point(value: Any, what: str) -> tuple[float, float]:
     return numbers[0], numbers[1]
 
 
+def place(x: float, y: float, decimals: int = 3) -> str:
+    """A position (m) as messages show it."""
+    return f"({round(x, decimals):.12g}, {round(y, decimals):.12g})"
+
+
 def as_goal(value: Any) -> Goal:
     """A goal from a Goal, a pose or a tuple (x, y) or (x, y, heading); InputError for anything else."""
     numbers = _numbers(value)
@@ -51,9 +58,9 @@ def as_goal(value: Any) -> Goal:
     heading = numbers[2] if len(numbers) == 3 else None
     if not all(map(math.isfinite, numbers)):
         raise InputError(f"a goal is ({x}, {y}, {heading}): expected finite numbers")
-    if heading is not None and abs(heading) > math.tau:
+    if heading is not None and abs(heading) > MOST_HEADING:
         raise InputError(
-            f"a goal's heading is {heading:g} rad: expected -6.28 to 6.28 "
+            f"a goal's heading is {heading:g} rad: expected -7 to 7 "
             f"({heading:g} degrees are {wrap_angle(math.radians(heading)):.4g} rad)"
         )
     return Goal(x, y, heading)

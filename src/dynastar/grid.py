@@ -12,12 +12,14 @@ import numpy.typing as npt
 from dynastar.config import summary
 from dynastar.errors import ConfigError, MapError, OutOfMap
 from dynastar.extras import plotter
+from dynastar.geometry import place
 
 if TYPE_CHECKING:  # Matplotlib comes with an extra
     from matplotlib.axes import Axes
 
 FREE, OCCUPIED, UNKNOWN = 0, 100, -1
 OCCUPIED_FROM, FREE_TO = 65, 19  # of 100, as map_server's 0.65 and 0.196
+MAX_CELLS = 16384 * 16384  # of a map, 268 million
 
 Unknown = Literal["free", "blocked"]
 Mask = npt.NDArray[np.bool_]
@@ -219,7 +221,7 @@ class OccupancyGrid:
         """(row, column) of the cell that holds a world point; OutOfMap if none does."""
         row, column = self.frame.to_grid(x, y)
         if not (0 <= row < self.rows and 0 <= column < self.columns):
-            raise OutOfMap(f"({x:g}, {y:g}) is off the map, which spans {self.extent()}")
+            raise OutOfMap(f"{place(x, y)} is off the map, which spans {self.extent()}")
         return int(row), int(column)
 
     def cell_to_world(self, row: int, column: int) -> tuple[float, float]:
@@ -255,7 +257,9 @@ class OccupancyGrid:
         far = np.array([[0, 0], [0, self.columns], [self.rows, 0], [self.rows, self.columns]])
         low = self.frame.points_to_world(far).min(axis=0)
         high = self.frame.points_to_world(far).max(axis=0)
-        return f"x {low[0]:g} to {high[0]:g}, y {low[1]:g} to {high[1]:g} m"
+        return "x {:.10g} to {:.10g}, y {:.10g} to {:.10g} m".format(
+            *np.column_stack([low, high]).ravel().round(3)
+        )
 
     def refined(self, factor: int) -> "OccupancyGrid":
         """The same map with every cell cut into ``factor`` x ``factor``."""
@@ -263,6 +267,11 @@ class OccupancyGrid:
             raise MapError(f"a grid cannot be refined by {factor}: expected a whole number from 1")
         if factor == 1:
             return self
+        if self.rows * self.columns * factor * factor > MAX_CELLS:
+            raise MapError(
+                f"a map of {self.size()} has too many cells of {self.resolution / factor:g} m: "
+                f"expected {MAX_CELLS} at most"
+            )
 
         def cut(array: npt.NDArray[Cell]) -> npt.NDArray[Cell]:
             return np.repeat(np.repeat(array, factor, axis=0), factor, axis=1)

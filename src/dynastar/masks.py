@@ -13,6 +13,8 @@ from dynastar.config import Field, self_checking
 from dynastar.errors import MapError
 from dynastar.grid import OCCUPIED_FROM, OccupancyGrid
 
+Cells = npt.NDArray[np.int64]
+
 ROUNDED = 1e-6  # relative error of a resolution that was a float32, as in ROS messages
 AT_ONCE = 2**18  # cells that a mask is laid over at a time, to bound the memory
 
@@ -86,23 +88,38 @@ def _limits_by_value(v_max: float, scale: SpeedScale) -> npt.NDArray[np.float32]
 
 def _laid_over(
     grid: OccupancyGrid, mask: OccupancyGrid, counts: npt.NDArray[np.bool_]
-) -> Iterator[tuple[npt.NDArray[np.int64], npt.NDArray[np.int8]]]:
+) -> Iterator[tuple[Cells, npt.NDArray[np.int8]]]:
     """Cells of ``grid`` (flat indices) and the mask's values there, bit by bit.
 
-    A cell has the value at its centre, and where the mask is finer those of all of its cells that count
-    and lie over it, by their corners: so no zone is lost.
+    A cell has the value at its centre, and those of all of the mask's cells that count and have their
+    centre in it, or a corner where the mask is finer: so no zone is lost.
     """
     is_finer = mask.resolution < grid.resolution * (1.0 - ROUNDED)
-    source, target = (mask, grid) if is_finer else (grid, mask)
-    inset = np.array([ROUNDED, 1.0 - ROUNDED] if is_finer else [0.5])
-    for first in range(0, source.values.size, AT_ONCE):
-        part = np.arange(first, min(first + AT_ONCE, source.values.size))
-        part = part[counts.reshape(-1)[part]] if is_finer else part
-        corners = np.column_stack(np.divmod(part, source.columns))
+    values = mask.values.reshape(-1)
+    if not is_finer:
+        for part in _bits(grid.values.size):
+            here, over = _under(grid, part, (0.5, 0.5), mask)
+            yield here, values[over]
+    inset = (ROUNDED, 1.0 - ROUNDED) if is_finer else (0.5,)
+    for part in _bits(values.size):
         for offset in product(inset, inset):
-            points = source.frame.points_to_world(corners + offset)
-            found = np.floor(target.frame.points_to_grid(points)).astype(np.int64)
-            inside = ((found >= 0) & (found < (target.rows, target.columns))).all(axis=1)
-            over = found[inside] @ (target.columns, 1)
-            index, values = (part[inside], over) if target is mask else (over, part[inside])
-            yield index, mask.values.reshape(-1)[values]
+            over, here = _under(mask, part[counts.reshape(-1)[part]], offset, grid)
+            yield here, values[over]
+
+
+def _bits(size: int) -> Iterator[Cells]:
+    """The numbers below ``size``, some at a time."""
+    for first in range(0, size, AT_ONCE):
+        yield np.arange(first, min(first + AT_ONCE, size))
+
+
+def _under(
+    grid: OccupancyGrid, cells: Cells, offset: tuple[float, ...], other: OccupancyGrid
+) -> tuple[Cells, Cells]:
+    """Those of a grid's cells that lie on another by a point at ``offset`` in them, and its cells there."""
+    points = np.column_stack(np.divmod(cells, grid.columns)) + offset
+    found = np.floor(other.frame.points_to_grid(grid.frame.points_to_world(points))).astype(
+        np.int64
+    )
+    inside = ((found >= 0) & (found < (other.rows, other.columns))).all(axis=1)
+    return cells[inside], found[inside] @ (other.columns, 1)

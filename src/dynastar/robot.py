@@ -39,7 +39,7 @@ class Lidar(NamedTuple):
     ``nothing`` are the values that the driver writes for "no return", besides +inf and range_max.
     """
 
-    beams: Annotated[int, Field("readings in a scan", "", 1, 20000)] = 360
+    beams: Annotated[int, Field("readings in a scan", "", 2, 20000)] = 360
     fov: Annotated[float, Field("angle from the first beam to the last", "rad", 0.01, math.tau)] = (
         math.tau
     )

@@ -4,6 +4,7 @@ import sys
 import time
 import unicodedata
 from collections.abc import Iterable
+from io import StringIO
 from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:
@@ -31,12 +32,14 @@ def printable(text: str, keep: str = "") -> str:
 class Printable:
     """A stream that writes all control characters but line ends and tabs as escapes."""
 
-    def __init__(self, stream: TextIO) -> None:
-        self.stream = stream
+    def __init__(self, stream: TextIO | None) -> None:
+        self.stream: TextIO = StringIO() if stream is None else stream  # None: it is closed
 
     def write(self, text: str) -> int:
-        """Writes text."""
-        return self.stream.write(printable(text, keep="\n\t"))
+        """Writes text; letters that the stream's encoding lacks as escapes, too."""
+        text = printable(text, keep="\n\t")
+        encoding = getattr(self.stream, "encoding", None) or "utf-8"
+        return self.stream.write(text.encode(encoding, "backslashreplace").decode(encoding))
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self.stream, name)

@@ -12,6 +12,7 @@ from dynastar.dwa.motion import (
     State,
     coast,
     driveable,
+    driveable_sample,
     driven,
     moved,
     slew,
@@ -113,6 +114,17 @@ def test_a_drive_follows_no_command_below_its_least_speed(command, wanted, least
     elif abs(wanted) >= least:
         assert found * wanted >= 0.0
         assert abs(found) == least
+    else:
+        assert found == 0.0
+
+
+@given(st.floats(-2.0, 2.0), st.floats(0.0, 0.5), st.floats(-2.0, 0.0), st.floats(0.0, 2.0))
+def test_a_sample_is_raised_to_the_least_speed_only_within_the_limits(speed, least, low, high):
+    speed = min(max(speed, low), high)
+    found = driveable_sample(speed, least, low, high)
+    assert low <= found <= high
+    assert found == 0.0 or abs(found) >= least
+    assert found in (speed, 0.0) or (abs(found) == least and found * speed > 0.0)
 
 
 def test_a_state_comes_back_from_its_record():

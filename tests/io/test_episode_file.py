@@ -149,6 +149,9 @@ def header(**changes):
         (lambda arrays: arrays.update(plan_rows=np.array([1, 1])), "add up"),
         (lambda arrays: arrays.update(plan_rows=np.array([-1, 4])), "add up"),
         (lambda arrays: arrays.update(clearance=np.array([None] * 5)), "damaged"),
+        (lambda arrays: arrays.update(times=np.full(5, np.nan)), "'times' are not finite"),
+        (lambda arrays: arrays.update(times=arrays["times"][::-1]), "go back"),
+        (lambda arrays: arrays.update(explored=arrays["explored"] + 0.5), "whole numbers"),
     ],
 )
 def test_an_episode_that_lies_says_where(tmp_path, change, message):

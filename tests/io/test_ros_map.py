@@ -229,6 +229,7 @@ def test_a_wrong_header_says_what_is_wrong(tmp_path, change, message):
         (b"!!python/object/apply:os.system ['true']", "not valid YAML"),
         (b"resolution: " + b"9" * 5000, "not valid YAML"),
         (b"image: 2001-99-99", "not valid YAML"),
+        (b"x: !!timestamp x", "not valid YAML"),
         (b"[" * 30000, "nested too deep"),
         (b"? [1, 2]\n: {}\n? {}\n: 1", "not valid YAML"),
         (b"a" * 300000, "at most"),

@@ -130,7 +130,7 @@ footprints = st.one_of(
 )
 lidars = st.builds(
     Lidar,
-    beams=st.integers(1, 800),
+    beams=st.integers(2, 800),
     fov=st.sampled_from([0.01, 1.0, math.pi, math.tau]),
     range_min=st.sampled_from([0.0, 0.1, 5.0, 10.0]),
     range_max=st.sampled_from([0.1, 3.5, 5.6, 30.0, 200.0]),

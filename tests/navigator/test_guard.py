@@ -336,7 +336,27 @@ def test_a_wrong_part_is_told():
         Guard(ROUND, grid="map.yaml")
     with pytest.raises(InputError, match="settings: got dict"):
         Guard(ROUND, {})
-    assert Guard("jackal").robot.name == "jackal"
+    guard = Guard("jackal")
+    assert guard.robot.name == "jackal"
+    with pytest.raises(InputError, match="a map: got str"):
+        guard.set_map("map.yaml")
+
+
+@pytest.mark.parametrize(("v", "omega"), [(0.2, 0.0), (-0.1, 0.0), (0.0, 0.9), (0.2, 0.9)])
+def test_a_drive_that_needs_more_than_is_asked_for_stands(v, omega):
+    limits = LIMITS._replace(v_max=0.3, v_min=-0.2, v_least=0.3, omega_max=1.0, omega_least=1.5)
+    drive = GuardedDrive(robot=replace(ROUND, limits=limits))
+    for given in drive.drive(Twist(v, omega), 1.0):
+        assert given.command == (0.0, 0.0)
+
+
+def test_states_of_a_clock_that_stands_are_not_kept():
+    drive = GuardedDrive(latency=0.1)
+    state, scan = drive.world.sensed_state(), drive.world.scan()
+    for _ in range(50):
+        drive.guard.filter(state, scan, Twist(0.2, 0.0))
+    assert len(drive.guard.sensing.poses._states) == 1
+    assert len(drive.guard._commands._sent) <= 2
 
 
 def test_a_guard_and_its_result_say_what_they_are():

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from dynastar.clearance import distance_to_squares
 from dynastar.errors import GoalOccupied, NoPath, OutOfMap, StartOccupied
-from dynastar.grid import OccupancyGrid
+from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.planning import GridPlanner, plan
 
 ROOM = OccupancyGrid.from_text(
@@ -100,3 +100,12 @@ def test_the_widest_radius_is_right(seed, radius):
         if "nearest place" in words:
             x, y = eval(words.split("fits is ")[1].split("), ")[0] + ")")
             GridPlanner(grid, radius).plan((x, y), (x, y))
+
+
+def test_the_place_that_fits_is_named_exactly_however_far_from_the_origin():
+    values = np.full((1, 10), 100, np.int8)
+    values[0, 7:] = 0
+    grid = OccupancyGrid(values, GridFrame(0.05, 1200.0, 0.0))
+    with pytest.raises(GoalOccupied, match=r"it fits is \(1200\.375, 0\.025\)"):
+        plan(grid, (1200.48, 0.025), (1200.3, 0.025))
+    assert plan(grid, (1200.48, 0.025), (1200.375, 0.025)).path.length > 0.0

@@ -243,3 +243,26 @@ def test_a_search_that_failed_is_not_repeated_until_the_map_lets_it_through(monk
     planner.mark(30, 80, np.zeros((20, 2), bool))
     assert planner.plan((1.0, 2.0), (5.0, 2.0)).path.length == pytest.approx(4.0, abs=0.01)
     assert len(searches) == 2
+
+
+@pytest.mark.parametrize("tolerance", [math.nan, -0.1])
+def test_a_tolerance_that_is_none_is_refused(tolerance):
+    with pytest.raises(ConfigError, match="tolerance"):
+        plan(OccupancyGrid(np.zeros((5, 8), np.int8), 0.5), (1, 1), (3, 2), tolerance=tolerance)
+
+
+def test_any_tolerance_is_within_the_map():
+    grid = OccupancyGrid(np.zeros((5, 8), np.int8), 0.5)
+    near = plan(grid, (1, 1), (3.9, 2.4), radius=0.6, tolerance=math.inf)
+    assert near.path.points[-1] == pytest.approx((3.4, 1.9), abs=0.05)
+
+
+def test_from_a_doorway_both_rooms_are_reached():
+    blocked = np.zeros((7, 15), bool)
+    blocked[:, 7] = True
+    blocked[3, 7] = False
+    planner = GridPlanner(OccupancyGrid(blocked), 1.0)
+    reached = planner.reached_from((7.3, 3.5))
+    assert reached[3, 12]
+    assert reached[3, 2]
+    assert not reached[3, 7]

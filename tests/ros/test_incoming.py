@@ -90,6 +90,7 @@ def test_maps_and_scans():
         (lambda m: setattr(m.info, "resolution", 0.0), "resolution"),
         (lambda m: setattr(m.info.origin.orientation, "x", 0.7), "quaternion|tilted"),
         (lambda m: setattr(m.info.origin.position, "x", math.nan), "finite"),
+        (lambda m: setattr(m.info.origin.position, "y", -1e18), "expected within 1e\\+06 m"),
         (
             lambda m: setattr(m.info.origin, "orientation", rotated(0.0, 0.2, 1.0)),
             "origin is tilted by 11.5 degrees: expected at most 5",
@@ -125,3 +126,8 @@ def test_paths_head_for_their_next_point():
     message = OUT.path(np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)]), "map", 1.0)
     headings = [incoming.yaw_of(pose.pose.orientation) for pose in message.poses]
     assert headings == pytest.approx([0.0, math.pi / 2, math.pi / 2])
+
+
+def test_a_message_that_is_no_twist_is_told():
+    with pytest.raises(InputError, match="expected geometry_msgs/msg/Twist"):
+        incoming.twist_of(make("std_msgs/msg/String", data="go"))

@@ -82,9 +82,9 @@ def test_the_border_is_a_wall():
 
 
 def test_the_mount_counts():
-    lidar = Lidar(1, 1.0, 0.0, 50.0, x=0.5, y=0.25, theta=math.pi / 2)
+    lidar = Lidar(3, 1.0, 0.0, 50.0, x=0.5, y=0.25, theta=math.pi / 2)
     scan = LidarSimulator(lidar, room()).scan(Pose2D(4.0, 3.0, math.pi / 2), 0.0)
-    assert scan.ranges[0] == pytest.approx(4.0 - 0.25)
+    assert scan.ranges[1] == pytest.approx(4.0 - 0.25)
     assert scan.mount == lidar.mount
 
 

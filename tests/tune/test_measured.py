@@ -292,3 +292,39 @@ def test_a_latency_is_never_longer_than_a_motion_is_waited_for():
 def test_a_step_of_the_command_is_no_motion_by_itself(drives):
     for _, _, found in drives.values():
         assert np.isfinite([estimate.low for estimate in found.estimates.values()]).all()
+
+
+def test_a_drive_that_lags_has_its_gain_or_none(tmp_path):
+    """A speed that is still on its way after seconds is not the one that it would reach."""
+    scenario = replace(PLAIN, drive=Drivetrain(gain_v=1.2, lag=0.8))
+    record(tmp_path / "bag", scenario, by_hand(0.4, 1.0), noise=0.001)
+    found = measured(read_drive(tmp_path / "bag"), ROBOT).estimates["gain_v"]
+    assert not found.told or found.low <= 1.2 <= found.high
+
+
+def test_commands_that_are_sent_on_a_change_have_no_period(drives):
+    drive = read_drive(drives[0][1])
+    changes = np.flatnonzero(np.abs(np.diff(drive.commands, axis=0)).max(axis=1) > 0.0) + 1
+    few = replace(
+        drive, command_times=drive.command_times[changes], commands=drive.commands[changes]
+    )
+    text = robot_toml(measured(few, ROBOT), "a recording")
+    assert "Commands come every" in text
+    assert "period" not in tomllib.loads(text)["navigator"]
+
+
+def test_of_two_lidars_the_one_with_more_scans_is_measured(drives, tmp_path, monkeypatch):
+    from dynastar.tune import recording
+
+    read = recording.scan_of
+
+    def odd(message, mount, count=iter(range(10**9))):
+        if next(count) % 3 == 0:
+            message.header.frame_id = "rear"
+            return replace(read(message, mount), ranges=read(message, mount).ranges + 0.5)
+        return read(message, mount)
+
+    monkeypatch.setattr(recording, "scan_of", odd)
+    found = measured(read_drive(drives[0][1]))
+    assert found.estimates["range_error"].high < 0.1
+    assert "another lidar has more scans" in found.left_out[0]

@@ -6,7 +6,7 @@ from pathlib import Path
 from dynastar.bench.presets import settings_of
 from dynastar.navigator import NavigatorConfig, configured
 from dynastar.robot import ROBOTS
-from dynastar.tune.space import OF_ROBOT, SPACE, limited, settings_table, start_values
+from dynastar.tune.space import OF_ROBOT, SPACE, limited, settings_table, start_values, widened
 
 PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "tune.md"
 
@@ -32,7 +32,9 @@ def test_the_search_begins_with_the_settings_it_is_given():
     config = configured("default", {"dwa": {"horizon": 3.0, "comfort": 2.0}})
     values = start_values(SPACE + OF_ROBOT, config)
     assert values["dwa.horizon"] == 3.0
-    assert values["dwa.comfort"] == 0.6
+    assert values["dwa.comfort"] == 2.0
+    (comfort,) = (p for p in widened(SPACE, values) if p.name == "dwa.comfort")
+    assert (comfort.low, comfort.high) == (0.05, 2.0)
     assert values["limits.v_max"] == 1.0
     table = settings_table(values)
     assert table["dwa"]["weights"]["risk"] == 20.0

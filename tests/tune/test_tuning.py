@@ -18,6 +18,7 @@ from dynastar.errors import InputError
 from dynastar.navigator import NavigatorConfig, configured
 from dynastar.robot import Robot
 from dynastar.tune.search import Plan
+from dynastar.tune.state import alone_in, load_state
 from dynastar.tune.tuning import Task, tune
 from dynastar.tune.worlds import RobotWorlds, suites_of, worlds_of
 
@@ -76,6 +77,38 @@ def test_a_search_that_was_killed_goes_on(tmp_path, capsys):
 def test_a_task_that_cannot_be_is_refused(task, words, tmp_path):
     with pytest.raises(InputError, match=words):
         tune(task, Plan(1.0), tmp_path)
+
+
+def test_a_robot_that_fits_nowhere_ends_the_search(tmp_path):
+    large = Robot.simple(4.0, 0.5)
+    with pytest.raises(InputError, match="people leaves out 100 worlds in a row"):
+        tune(Task(("people",), 1, large), Plan(1.0), tmp_path)
+
+
+def test_limits_are_searched_only_in_worlds_of_the_robot(tmp_path, capsys):
+    pytest.importorskip("optuna")
+    (tmp_path / "again").touch()
+    words = ["tune", "--robot", "jackal", *OPTIONS, "--settings", "1", "--data", str(tmp_path)]
+    assert main([*words, "--out", str(tmp_path / "out")]) == 0
+    assert "12 parameters" in capsys.readouterr().err
+
+
+def test_one_search_at_a_time_is_in_a_folder(tmp_path):
+    with (
+        alone_in(tmp_path),
+        pytest.raises(InputError, match="another search runs in it"),
+        alone_in(tmp_path),
+    ):
+        pass
+    with alone_in(tmp_path):
+        pass
+
+
+@pytest.mark.parametrize("text", ['{"asked": [], "trials": []}', '{"asked": null, "trials": []}'])
+def test_a_damaged_state_is_named(tmp_path, text):
+    (tmp_path / "state.json").write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match="cannot be read"):
+        load_state(tmp_path, {"worlds": 1})
 
 
 def test_worlds_are_drawn_for_a_robot_and_the_same_for_slower_limits():

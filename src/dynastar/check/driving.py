@@ -68,7 +68,7 @@ def _limit(robot: Robot, config: NavigatorConfig) -> str:
         return f"{robot.lidar.beams} beams, narrowest {config.local_map.narrowest:g} m"
     if sight.ahead == sight.by_map:
         own = fitted(config, robot)
-        return f"half of the local map's size, {own.local_map.size:.3g} m"
+        return f"the local map's size, {own.local_map.size:.3g} m, with the robot near its middle"
     return f"range_max {robot.lidar.range_max:g} m"
 
 

@@ -102,7 +102,7 @@ class _Collected:
     refused: dict[str, list[str]] = field(default_factory=dict)
     state: RobotState | None = None
     base: str = ""
-    mount: Pose2D | None = None
+    mounts: dict[str, Pose2D] = field(default_factory=dict)  # of lidars, by frame
 
     def __post_init__(self) -> None:
         self.readings = Readings(self.robot, self.config)
@@ -161,7 +161,8 @@ class _Collected:
         self.scans.append((len(scan.ranges), abs(span), scan.range_min, scan.range_max))
         if placed is not None:
             x, y, theta = placed.pose
-            self.mount = Pose2D(x, y, wrap_angle(theta + scan.angle_min + 0.5 * span))
+            middle = wrap_angle(theta + scan.angle_min + 0.5 * span)
+            self.mounts[message.header.frame_id] = Pose2D(x, y, middle)
         self.readings.interpreted(scan)
         self.hints |= dict.fromkeys(self.readings.hints)
 
@@ -184,5 +185,11 @@ class _Collected:
             np.array(self.speeds),
             (*self.hints, *refused),
             self.latency,
-            self.mount,
+            self._mount_nearest(),
         )
+
+    def _mount_nearest(self) -> Pose2D | None:
+        """The mount, of the lidars recorded, that is nearest to the declared one."""
+        x, y, _ = self.robot.lidar.mount
+        mounts = self.mounts.values()
+        return min(mounts, key=lambda one: math.hypot(one.x - x, one.y - y), default=None)

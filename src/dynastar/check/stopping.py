@@ -9,6 +9,7 @@ import shapely
 from dynastar.footprint import Footprint
 from dynastar.navigator.config import NavigatorConfig, fitted, margin_of
 from dynastar.perception.hidden import SLACK
+from dynastar.perception.local_map import OFF_CENTRE
 from dynastar.robot import Lidar, Limits, Robot
 
 RIM_POINTS = 180  # of a circle
@@ -82,7 +83,7 @@ def sight_of(robot: Robot, config: NavigatorConfig) -> Sight:
     step, own = lidar.increment, fitted(config, robot)
     by_range = lidar.x + lidar.range_max * (1.0 - 0.5 * step) - config.range_error
     by_beams = lidar.x + config.local_map.narrowest / step
-    by_map = 0.5 * own.local_map.size - 2.0 * own.resolution
+    by_map = (0.5 - OFF_CENTRE) * own.local_map.size - 2.0 * own.resolution
     return Sight(max(0.0, by_range), max(0.0, by_beams), by_map)
 
 

@@ -1,16 +1,14 @@
 """Outputs are checked before anything is run, so that nothing is lost at the end of an hour."""
 
 import os
-import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 from dynastar.errors import InputError
 from dynastar.extras import require
 from dynastar.io.paths import local_path
 
-NAMING = {".toml": "=", ".yaml": ":", ".yml": ":"}  # texts that may name files, after such a sign
-QUOTED = re.compile(r"[\"']([^\"']+)[\"']")
 MOST_TEXT = 2**20  # bytes, of a file that may name others
 PICTURES = ".png", ".svg", ".pdf"
 
@@ -47,25 +45,57 @@ def _read_with(file: Path, found: frozenset[Path] = frozenset()) -> frozenset[Pa
         if file.resolve() in found or not file.is_file():
             return found
         names = file.suffix.lower() in NAMING and file.stat().st_size < MOST_TEXT
-        text = file.read_text(encoding="utf-8", errors="replace") if names else ""
-    except (OSError, ValueError):  # no name that a file can have
+        table = NAMING[file.suffix.lower()](file) if names else {}
+    except (OSError, ValueError, InputError):  # no name that a file can have, or nothing to be read
         return found
     found |= {file.resolve()}
-    for line in text.splitlines():  # a value may be quoted, and hold spaces
-        _, _, value = re.sub(r"\s#.*", "", line).partition(NAMING[file.suffix.lower()])
-        for name in (value.strip().strip("'\""), *QUOTED.findall(line)):
-            found = _read_with(file.parent / name, found) if name else found
+    for name in _strings(table):
+        try:
+            found = _read_with(file.parent / local_path(os.path.expandvars(name)), found)
+        except InputError:  # of something on another computer
+            continue
     return found
+
+
+def _strings(value: Any) -> Iterator[str]:
+    """All strings in nested tables and lists."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, Mapping | list):
+        for part in value.values() if isinstance(value, Mapping) else value:
+            yield from _strings(part)
+
+
+def _toml(file: Path) -> dict[str, Any]:
+    import tomllib
+
+    return tomllib.loads(file.read_text(encoding="utf-8"))
+
+
+def _yaml(file: Path) -> dict[Any, Any]:
+    from dynastar.io.yaml_table import read_yaml
+
+    return read_yaml(file.read_bytes(), file)
+
+
+NAMING = {".toml": _toml, ".yaml": _yaml, ".yml": _yaml}  # how texts that may name files are read
 
 
 def check_picture(option: str, name: str | Path | None, read: Iterable[Path] = ()) -> Path | None:
     """As ``check_file``, for a picture that Matplotlib draws. MissingPackage without it."""
+    refuse_dash(option, name)
     file = check_file(option, name, read)
     if file is not None and file.suffix and file.suffix.lower() not in PICTURES:
         raise InputError(f"{option} {name}: expected a file in {', '.join(PICTURES)}")
     if file is not None:
         require("viewer", "pictures need")
     return file
+
+
+def refuse_dash(option: str, name: str | Path | None) -> None:
+    """InputError for "-", where what is written is nothing for a terminal."""
+    if str(name) == "-":
+        raise InputError(f"{option} -: expected a file")
 
 
 def make_folder(option: str, folder: Path) -> Path:

@@ -1,6 +1,8 @@
 """``dynastar plan``: a path on a map."""
 
 import argparse
+import math
+import re
 from typing import TYPE_CHECKING, Any
 
 from dynastar import io
@@ -9,7 +11,7 @@ from dynastar.cli.outputs import check_picture
 from dynastar.cli.parsing import distance, number, path
 from dynastar.cli.show import as_json, as_table
 from dynastar.config import choose
-from dynastar.errors import InputError
+from dynastar.errors import InputError, PlanningError
 
 if TYPE_CHECKING:
     from dynastar.grid import OccupancyGrid
@@ -78,7 +80,10 @@ def execute(arguments: argparse.Namespace) -> int:
     }
     picture = check_picture("--out", arguments.out, [arguments.map])
     prepare()
-    planning.plan(grid, start, goal, **settings)  # loads
+    try:
+        planning.plan(grid, start, goal, **settings)  # loads
+    except PlanningError as error:
+        raise type(error)(_in_file(grid, str(error)) if in_file else str(error)) from None
     plan = planning.plan(grid, start, goal, **settings)
     summary = {
         "planner": arguments.planner,
@@ -100,6 +105,17 @@ def execute(arguments: argparse.Namespace) -> int:
         print(as_table({**summary, "path": f"{len(points)} points"}))
         print("\n".join(f"{x:12.3f} {y:12.3f}" for x, y in points))
     return 0
+
+
+def _in_file(grid: "OccupancyGrid", message: str) -> str:
+    """A message whose places are columns and rows of a .map file."""
+    from dynastar.io.movingai import points_to_file
+
+    def cell(found: re.Match[str]) -> str:
+        column, row = points_to_file(grid, [[float(found[1]), float(found[2])]])[0]
+        return f"(column {math.floor(column)}, row {math.floor(row)})"
+
+    return re.sub(r"\((-?[\d.e+-]+), (-?[\d.e+-]+)\)", cell, message)
 
 
 def _from_file(grid: "OccupancyGrid", option: str, x: float, y: float) -> tuple[float, float]:

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 from dynastar import io
-from dynastar.cli.outputs import check_file
+from dynastar.cli.outputs import check_file, refuse_dash
 from dynastar.cli.parsing import path
 from dynastar.errors import EpisodeError, InputError
 
@@ -51,6 +51,7 @@ def execute(arguments: argparse.Namespace) -> int:
     out = arguments.out or files[0].with_name(
         "report.html" if files[0].name == EPISODE else f"{files[0].stem}.html"
     )
+    refuse_dash("--out", out)
     check_file("--out", out, files)
     write_report([io.load_episode(file) for file in files], out)
     print(out)

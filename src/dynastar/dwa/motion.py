@@ -54,10 +54,22 @@ def slew(current, wanted, accel, brake, duration):
 
 @inner
 def driveable(command, wanted, least):
-    """A command towards a ``wanted`` speed that a drive follows: 0, or of ``least`` magnitude."""
+    """A command towards a ``wanted`` speed that a drive follows: 0, or of ``least`` magnitude.
+
+    It is never more than what is wanted.
+    """
     if abs(command) >= least:
         return command
-    return math.copysign(least, wanted) if abs(wanted) >= 0.5 * least else 0.0
+    return math.copysign(least, wanted) if abs(wanted) >= least else 0.0
+
+
+@inner
+def driveable_sample(speed, least, low, high):
+    """The sample nearest to a speed that a drive follows: 0, or of ``least`` magnitude if possible."""
+    if abs(speed) >= least or speed == 0.0:
+        return speed
+    raised = math.copysign(least, speed)
+    return raised if abs(speed) >= 0.5 * least and low <= raised <= high else 0.0
 
 
 @inner

@@ -10,7 +10,7 @@ import numpy as np
 from dynastar.compiled import inner, njit
 from dynastar.dwa.admissible import ADMISSIBLE, MOVING, refusal
 from dynastar.dwa.clearance import least_clearance
-from dynastar.dwa.motion import command_towards, driveable, stopping_time
+from dynastar.dwa.motion import command_towards, driveable_sample, stopping_time
 from dynastar.dwa.rollout import Start, roll_out, tail_speeds, write
 from dynastar.dwa.scene import BACK, FOLLOW, TAILS, Manoeuvre
 from dynastar.dwa.terms import Terms, evaluate, most_progress, objective, passes_clear, state_value
@@ -74,7 +74,8 @@ def fill_candidates(scene, rules, start, candidates):
     candidates[FOLLOW_NOW].hold = rules.schedule.period
     for candidate in candidates[:n]:
         v, omega = min(max(candidate.v, window.low_v), window.high_v), candidate.omega
-        v, omega = driveable(v, v, limits.v_least), driveable(omega, omega, limits.omega_least)
+        v = driveable_sample(v, limits.v_least, speeds.low_v, speeds.high_v)
+        omega = driveable_sample(omega, limits.omega_least, speeds.low_omega, speeds.high_omega)
         candidate.v, candidate.omega = v, omega
         command = command_towards(rules, (state.v, state.omega), (v, omega))
         candidate.command_v, candidate.command_omega = command

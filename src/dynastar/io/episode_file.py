@@ -61,6 +61,11 @@ _TRACE: dict[str, tuple[Any, ...]] = {
     "seen": (-1, 4),
 }
 _TEXTS = ("states", "limits", "reasons")
+_COUNTS = (
+    "values",
+    "explored",
+    *(name for name in {**_SHAPES, **_TRACE} if name.endswith("_rows")),
+)
 _OPTIONAL = ("limits", *_TRACE)  # was not recorded before
 _MASKS = ("keepout", "speed_limit")
 _KNOWN = {*_SHAPES, *_MASKS, *_TRACE}
@@ -220,6 +225,11 @@ def _check(arrays: Arrays) -> None:
         text = arrays[name].dtype.kind == "U"
         if text != (name in _TEXTS) or arrays[name].dtype.kind not in "Uuifb":
             raise EpisodeError(f"'{name}' is of {arrays[name].dtype}: expected numbers or names")
+        if name in _COUNTS and arrays[name].dtype.kind not in "ui":
+            raise EpisodeError(f"'{name}' is of {arrays[name].dtype}: expected whole numbers")
+    times = arrays["times"].astype(np.float64)
+    if not (np.isfinite(times).all() and (np.diff(times) >= 0.0).all()):
+        raise EpisodeError("'times' are not finite or go back: expected seconds that rise")
 
 
 def _episode(header: dict[str, Any], arrays: Arrays) -> Episode:

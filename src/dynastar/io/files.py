@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from dynastar.errors import InputError, MapError
+from dynastar.grid import MAX_CELLS
 from dynastar.io.paths import local_path
 
-MAX_CELLS = 16384 * 16384  # of a map, 268 million; checked before anything is decoded
 MAX_BYTES = 4 * MAX_CELLS  # of a map's image
 MAX_TEXT_BYTES = 128 * 2**20  # of a map drawn in text
 MAX_TABLE_BYTES = 2**18  # of a TOML file

@@ -13,7 +13,8 @@ from PIL import Image
 from PIL.PngImagePlugin import PngImageFile
 
 from dynastar.errors import MapError
-from dynastar.io.files import MAX_CELLS, check_size
+from dynastar.grid import MAX_CELLS
+from dynastar.io.files import check_size
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _CHANNELS = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}  # by colour type

@@ -25,6 +25,7 @@ from dynastar.io.scenario_tables import MapTable, PlaceTable, RobotTable, Scenar
 from dynastar.io.scenario_things import contains, read_mover, read_obstacle
 from dynastar.masks import SpeedScale, with_keepout, with_speed_limits
 from dynastar.navigator import NavigatorConfig
+from dynastar.planning import ALGORITHMS
 from dynastar.robot import ROBOTS, Lidar, Limits, Robot
 from dynastar.simulation.run import effective_config
 from dynastar.simulation.scenario import Noise, Scenario
@@ -261,7 +262,8 @@ def _check_navigator(scenario: Scenario) -> None:
     from dynastar.navigator.config import configured
 
     try:
-        configured(scenario.preset, scenario.navigator)
+        config = configured(scenario.preset, scenario.navigator)
+        choose(config.planner.planner, ALGORITHMS, "planner")
     except ConfigError as error:
         raise ConfigError(f"in [navigator]: {error}") from None
 

@@ -29,6 +29,9 @@ class _Loader(yaml.SafeLoader):
         return super().construct_mapping(node, deep)
 
 
+# PyYAML lets out what Python says of a tagged value that is none.
+_BROKEN = yaml.YAMLError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError
+
 _Loader.add_implicit_resolver(
     "tag:yaml.org,2002:float",
     re.compile(r"^[-+]?[0-9]+(\.[0-9]*)?[eE][-+]?[0-9]+$"),
@@ -45,7 +48,7 @@ def read_yaml(data: bytes, path: Path) -> dict[Any, Any]:
         raise MapError(f"{path}: this is not valid YAML{where}: {error.problem!s:.100}") from None
     except RecursionError:
         raise MapError(f"{path}: this YAML is nested too deep") from None
-    except (yaml.YAMLError, ArithmeticError, LookupError, TypeError, ValueError) as error:
+    except _BROKEN as error:
         reason = " ".join(str(error).split())
         raise MapError(f"{path}: this is not valid YAML: {reason:.100}") from None
     if not isinstance(table, dict):

@@ -171,6 +171,8 @@ class Commands:
             return
         if is_finite(state):
             self.check.note(state, command)
+        if self._sent and self._sent[-1][0] == now:
+            self._sent.pop()
         self._sent.append((now, command))
         while len(self._sent) > 1 and self._sent[1][0] + self.latency <= now:
             self._sent.pop(0)

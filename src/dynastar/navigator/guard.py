@@ -81,7 +81,12 @@ class Guard:
         return summary(self, f"robot {shown(self.robot.name)}", on, repr(self.last))
 
     def set_map(self, grid: OccupancyGrid | None) -> None:
-        """Use another map, or none. What was seen is kept, unless the map has another yaw."""
+        """Use another map, or none. What was seen is kept, unless the map has another yaw.
+
+        Raises InputError for what is no map.
+        """
+        if grid is not None:
+            as_robot(grid, self.robot, self.config)
         self.sensing = self.sensing.on_map(self._planning_map(grid))
 
     def _planning_map(self, grid: OccupancyGrid | None) -> PlanningMap:

@@ -53,6 +53,8 @@ class PoseHistory:
         jumped = bool(self._states) and self._is_jump(self._states[-1], state)
         if jumped:
             self._states.clear()
+        elif self._states and self._states[-1].stamp == state.stamp:
+            self._states.pop()
         self._states.append(state)
         while state.stamp - self._states[0].stamp > KEPT_FOR:
             self._states.popleft()

@@ -96,11 +96,16 @@ class Sensing:
     def on_trial(self, state: RobotState, command: Twist | None) -> Twist | None:
         """The command, slowed while the robot tries whether a lidar is really frozen.
 
-        A faster robot brakes when its data are too old.
+        A faster robot brakes when its data are too old. What is too slow for the drive is a stop.
         """
-        if command is None or not self.feed.is_frozen or abs(state.twist.v) >= 2.0 * TRIAL.v:
+        limits = self.robot.limits
+        most = Twist(max(TRIAL.v, limits.v_least), max(TRIAL.omega, limits.omega_least))
+        if command is None or not self.feed.is_frozen or abs(state.twist.v) >= 2.0 * most.v:
             return command
-        return slowed(command, TRIAL)
+        v, omega = slowed(command, most)
+        if 0.0 < abs(v) < limits.v_least or 0.0 < abs(omega) < limits.omega_least:
+            return None
+        return Twist(v, omega)
 
     def update(
         self, state: RobotState, scans: Sequence[LaserScan], trusts_map: bool = False

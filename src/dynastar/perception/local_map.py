@@ -17,6 +17,7 @@ Indices = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
 
 UNSEEN, SEEN_FREE, SEEN_OCCUPIED = np.arange(3, dtype=np.uint8)  # states of a cell
+OFF_CENTRE = 1.0 / 12.0  # of the window's side, by which the robot may be off its middle
 SAME = 1e-3  # cells, by which lattices may be apart that count as one
 ROUNDED = 1e-6  # relative error of a resolution that was a float32, as in ROS messages
 
@@ -124,7 +125,7 @@ class LocalMap:
         up = math.floor((y - y0) / a) - n // 2 - self.row0
         right = math.floor((x - x0) / a) - n // 2 - self.column0
         up, right = up - up % 2, right - right % 2  # fields of half the resolution stay aligned
-        if max(abs(up), abs(right)) * a < self.config.size / 12:
+        if max(abs(up), abs(right)) * a < OFF_CENTRE * self.config.size:
             return
         rows, columns = np.arange(n) + up, np.arange(n) + right
         self.free_at = picked(self.free_at, rows, columns, kernels.NEVER)

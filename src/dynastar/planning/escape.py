@@ -22,13 +22,15 @@ class WayOut(NamedTuple):
     """The cells (n, 2) from a start to a cell outside the inflation, and the clearance kept there.
 
     The ``clearance``, in cells, is that from all blocked cells but those of ``zone``, the keep-out
-    zone [rows, columns] in which the first ``inside`` cells lie.
+    zone [rows, columns] in which the first ``inside`` cells lie. ``parts`` are the numbers of the
+    connected parts that other ways out lead to, too.
     """
 
     cells: Cells
     clearance: float
     zone: Mask | None = None
     inside: int = 0
+    parts: npt.NDArray[np.int32] = np.empty(0, np.int32)
 
 
 NO_WAY = WayOut(np.empty((0, 2), np.int32), 0.0)  # of a start outside the inflation
@@ -81,13 +83,14 @@ def way_out(
     if np.isinf(lengths).all():
         raise NoPath(f"no way out of the inflation leads on from cell {start}")
     row, column = divmod(int(lengths.argmin()), lengths.shape[1])
+    ways_to = np.unique(parts[np.isfinite(lengths)])
     way = near.way_to((row, column)) + corner
     if first != here:
         way = np.vstack([np.array([start], np.int32), way])
     if zone is not None:
         way, inside = _left_once(grid, way, places, zone)
-        return WayOut(way, kept, zone, inside)
-    return WayOut(way, kept)
+        return WayOut(way, kept, zone, inside, ways_to)
+    return WayOut(way, kept, parts=ways_to)
 
 
 def smoothed(grid: InflatedGrid, line: Points, way: WayOut) -> Points:

@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from dynastar.clearance import distance_to_squares
 from dynastar.errors import GoalOccupied, NoPath, OutOfMap, PlanningError, StartOccupied
+from dynastar.geometry import place
 from dynastar.grid import OccupancyGrid, Unknown
 from dynastar.planning.neighbours import components
 from dynastar.planning.search import SearchGrid
@@ -67,7 +68,7 @@ def misfit(
         trouble = f"is {gap:.3g} m from {what_is_near}, nearer than the radius of {radius:.3g} m"
         if gap >= radius:
             trouble = f"has no cell beside it where a radius of {radius:.3g} m fits"
-    words = [f"{what} ({x:g}, {y:g}) {trouble}", _nearest_fit(grid, field, (x, y), radius)]
+    words = [f"{what} {place(x, y)} {trouble}", _nearest_fit(grid, field, (x, y), radius)]
     if unknown == "blocked" and grid.unknown[cell]:
         words.append(UNKNOWN_HELPS)
     return "; ".join(words)
@@ -82,15 +83,12 @@ def parted(
     width, where = _widest(field, ends)
     if width * grid.resolution >= radius > 0.0:
         return None
-    words = (
-        f"no way leads from ({start[0]:g}, {start[1]:g}) to ({goal[0]:g}, {goal[1]:g}) "
-        f"for a radius of {radius:.3g} m"
-    )
+    words = f"no way leads from {place(*start)} to {place(*goal)} for a radius of {radius:.3g} m"
     if width > 0.0:
         x, y = grid.cell_to_world(*where)
         words += (
             f"; the widest that would pass has {_rounded_down(width * grid.resolution):g} m, "
-            f"and ({x:.4g}, {y:.4g}) is where it is narrowest"
+            f"and {place(x, y)} is where it is narrowest"
         )
     else:
         words += ", nor for any other"
@@ -138,7 +136,7 @@ def _nearest_fit(grid: OccupancyGrid, field: Floats, xy: Point, radius: float) -
     points = grid.frame.points_to_world(np.column_stack([rows, columns]) + 0.5)
     away = np.hypot(*(points - (xy[0], xy[1])).T)
     x, y = points[away.argmin()]
-    return f"the nearest place where it fits is ({x:.4g}, {y:.4g}), {away.min():.3g} m away"
+    return f"the nearest place where it fits is {place(x, y, 6)}, {away.min():.3g} m away"
 
 
 def _widest(

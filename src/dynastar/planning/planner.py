@@ -1,5 +1,6 @@
 """Planning on a map in metres: way out of the inflation, search and smoothing."""
 
+import math
 import time
 
 import numpy as np
@@ -15,7 +16,7 @@ from dynastar.errors import (
     PlanningError,
     StartOccupied,
 )
-from dynastar.geometry import as_point
+from dynastar.geometry import as_point, place
 from dynastar.grid import OccupancyGrid, Unknown
 from dynastar.masks import zone_around
 from dynastar.path import Path
@@ -107,10 +108,14 @@ class GridPlanner:
         From a start inside the inflation the path first takes the shortest way out that leads on to
         the goal (see ``way_out``). Where the disc does not fit at the goal, or no way leads there,
         the path ends at the nearest place that can be reached within ``tolerance`` metres. Raises
-        OutOfMap, StartOccupied, GoalOccupied or NoPath.
+        OutOfMap, StartOccupied, GoalOccupied or NoPath, and ConfigError for a tolerance that is none.
         """
         start_xy, goal_xy = as_point(start_xy, "the start"), as_point(goal_xy, "the goal")
         planner = planner or self.config.planner
+        if not tolerance >= 0.0:
+            raise ConfigError(f"a goal's tolerance is {tolerance} m: expected 0 m or more")
+        diagonal = math.hypot(self.grid.rows, self.grid.columns)
+        reach = min(tolerance / self.grid.resolution, diagonal)  # cells
         try:
             goal = self._point(goal_xy, "goal")
             self._point(start_xy, "start")
@@ -122,7 +127,7 @@ class GridPlanner:
                 except NoPath:
                     if tolerance <= 0.0:
                         raise
-            places = self._inflated_grid.places_near(goal, tolerance / self.grid.resolution)
+            places = self._inflated_grid.places_near(goal, reach)
             if len(places) == 0:
                 raise GoalOccupied(self._misfit("goal", goal))
             return self._plan(start_xy, goal_xy, places, explored, planner)
@@ -131,14 +136,13 @@ class GridPlanner:
             raise
 
     def reached_from(self, start_xy: Point) -> Mask:
-        """True where the disc can go from a start, or from where it leaves the inflation there.
+        """True where the disc can go from a start, or from any place where it leaves the inflation there.
 
         [rows, columns]; raises OutOfMap or StartOccupied.
         """
-        cell, _ = self._way_out(self._point(start_xy, "start"), None)
+        cell, way = self._way_out(self._point(start_xy, "start"), None)
         parts = self._inflated_grid.parts
-        reached: Mask = parts == parts[cell]
-        return reached
+        return np.isin(parts, way.parts if len(way.cells) else parts[cell])
 
     def _plan(
         self, start_xy: Point, goal_xy: Point, places: Cells, explored: bool, planner: str
@@ -203,12 +207,12 @@ class GridPlanner:
         search = self._inflated_grid.search
         try:
             cell, way = self._way_out(start, places)
-            place = self._first_reached(cell, places)
-            found = search.search(cell, place, planner, self.config.heuristic, explored)
+            last = self._first_reached(cell, places)
+            found = search.search(cell, last, planner, self.config.heuristic, explored)
         except NoPath:
             self._failed = True
             ends = self.grid.frame.to_world(*start), self.grid.frame.to_world(*goal)
-            words = " to ".join(f"({x:.4g}, {y:.4g})" for x, y in ends)
+            words = " to ".join(place(x, y) for x, y in ends)
             raise NoPath(f"no way leads from {words}") from None
         self._failed = False
         return way, found
@@ -249,15 +253,14 @@ class GridPlanner:
         row, column = self.grid.frame.to_grid(*xy)
         if not (0 <= row < self.grid.rows and 0 <= column < self.grid.columns):
             raise OutOfMap(
-                f"the {name} ({xy[0]:g}, {xy[1]:g}) is off the map, which spans "
-                f"{self.grid.extent()}"
+                f"the {name} {place(*xy)} is off the map, which spans {self.grid.extent()}"
             )
         return row, column
 
     def _misfit(self, name: str, point: Point) -> str:
         """Message for a point where the disc does not fit; ``explained`` says why."""
         x, y = self.grid.frame.to_world(*point)
-        return f"the {name} ({x:g}, {y:g}) has no room for a radius of {self.radius:.3g} m"
+        return f"the {name} {place(x, y)} has no room for a radius of {self.radius:.3g} m"
 
     def _path(self, line: npt.NDArray[np.float64], start_xy: Point, goal_xy: Point) -> Path:
         points = self.grid.frame.points_to_world(line)

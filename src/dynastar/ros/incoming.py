@@ -11,9 +11,9 @@ import numpy as np
 
 from dynastar.config import counted
 from dynastar.errors import InputError
-from dynastar.geometry import Goal, Pose2D, Twist, wrap_angle
-from dynastar.grid import GridFrame, OccupancyGrid
-from dynastar.io.files import MAX_CELLS
+from dynastar.geometry import Goal, Pose2D, Twist, place, wrap_angle
+from dynastar.grid import MAX_CELLS, GridFrame, OccupancyGrid
+from dynastar.navigator.pose_history import FARTHEST
 from dynastar.ros.transforms import Mount, check_level
 from dynastar.scan import LaserScan
 
@@ -50,8 +50,12 @@ def pose_of(pose: Any, what: str = "a pose") -> Pose2D:
 
 
 def twist_of(twist: Any) -> Twist:
-    """A geometry_msgs/Twist in the plane, with the numbers that it has."""
-    return Twist(float(twist.linear.x), float(twist.angular.z))
+    """A geometry_msgs/Twist in the plane, with the numbers that it has; InputError for no such message."""
+    try:
+        return Twist(float(twist.linear.x), float(twist.angular.z))
+    except AttributeError:
+        kind = getattr(twist, "__msgtype__", type(twist).__name__)
+        raise InputError(f"a message is a {kind}: expected geometry_msgs/msg/Twist") from None
 
 
 def goal_of(message: Any, frame: str) -> Goal:
@@ -84,6 +88,10 @@ def grid_of(message: Any, frame: str) -> OccupancyGrid:
         raise InputError(f"the map has {len(message.data)} values: expected {columns} x {rows}")
     values = np.frombuffer(message.data, dtype=np.int8).reshape(rows, columns)
     pose = pose_of(info.origin, "the map's origin")
+    if max(abs(pose.x), abs(pose.y)) > FARTHEST:
+        raise InputError(
+            f"the map's origin is {place(pose.x, pose.y)}: expected within {FARTHEST:g} m"
+        )
     return OccupancyGrid(values, GridFrame(float(info.resolution), *pose))
 
 

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.errors import ConfigError
+from dynastar.navigator import NavigatorConfig
 from dynastar.robot import ROBOTS, Robot
 from dynastar.tune.estimate import Estimate, untold
 from dynastar.tune.ramps import accelerations
@@ -107,6 +109,7 @@ def robot_toml(found: Measured, source: str, told: Mapping[str, Any] | None = No
         "What has none is not measured: check it, and declare what is true.",
         f"No recording tells: {NEVER_TOLD}.",
         *(one.words() for one in found.estimates.values() if not one.told),
+        *_left_out(found.estimates["period"]),
     ]
     if found.robot is None:
         head.append(f"The base {UNKNOWN} is a guess, for the footprint: name your own.")
@@ -117,6 +120,23 @@ def robot_toml(found: Measured, source: str, told: Mapping[str, Any] | None = No
         for name in too_fast
     ]
     return toml_text(_without_none(_tables(found, told or {})), comments, head)
+
+
+def _legal(period: Estimate) -> float | None:
+    """The period (s), or None where a file may not have it: of commands that are sent on a change."""
+    try:
+        return None if period.value is None else NavigatorConfig(period=period.value).period
+    except ConfigError:
+        return None
+
+
+def _left_out(period: Estimate) -> list[str]:
+    """Says that the period is known, and not in the file."""
+    if not period.told or _legal(period) is not None:
+        return []
+    return [
+        f"Commands come every {period.value:.3g} s, which no loop may: declare the loop's period."
+    ]
 
 
 def is_too_fast(gain: Estimate) -> bool:
@@ -139,7 +159,7 @@ def _tables(found: Measured, told: Mapping[str, Any]) -> dict[str, Any]:
         "omega_least": _end(names["deadband_omega"], "high"),
     }
     navigator = {
-        "period": names["period"].value,
+        "period": _legal(names["period"]),
         "range_error": _end(names["range_error"], "high"),
         "drive_error": _drive_error(names["gain_v"], names["gain_omega"]),
     }

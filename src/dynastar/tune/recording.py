@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.errors import DataError, DynastarError, InputError
-from dynastar.geometry import Pose2D
+from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import Robot
 from dynastar.ros.bag import BagReader
 from dynastar.ros.bridge import REQUESTS, started
@@ -67,18 +67,23 @@ def read_drive(path: str | Path, remap: Mapping[str, str] | None = None) -> Driv
 def _read(bag: BagReader, shorts: Mapping[str, str]) -> Drive:
     found: dict[str, list[tuple[float, Any]]] = {short: [] for short in shorts.values()}
     robot = None
+    lidars: dict[str, list[tuple[float, Any]]] = {}  # by the frame of its scans
     refused: dict[str, list[str]] = {}
     for name, time, message in bag.messages(set(shorts)):
         short = shorts[name]
         if short == REQUESTS:
             robot = robot or _robot_in(message.data)
         elif short == COMMANDS:
-            found[short].append((time, twist_of(getattr(message, "twist", message))))
+            _note(found[short], refused, short, time, _command(message))
         elif short == "odom":
             _note(found[short], refused, short, time, _odometry(message))
         else:
             scan = scan_of(message, AT_ORIGIN)
-            _note(found[short], refused, short, time, scan.fault() or scan)
+            lidar = lidars.setdefault(message.header.frame_id, [])
+            _note(lidar, refused, short, time, scan.fault() or scan)
+    for frame in sorted(lidars, key=lambda name: len(lidars[name])):
+        others, found["scan"] = found["scan"], lidars[frame]
+        refused.setdefault("scan", []).extend(["another lidar has more scans"] * len(others))
     for short in ("scan", "odom", COMMANDS):
         if len(found[short]) < 2:
             few = f"{bag.path}: fewer than two messages of '{short}' that can be used"
@@ -95,8 +100,16 @@ def _read(bag: BagReader, shorts: Mapping[str, str]) -> Drive:
         np.array([time for time, _ in found["scan"]]),
         tuple(scan for _, scan in found["scan"]),
         robot,
-        refusals(refused),
+        refusals({topic: words for topic, words in refused.items() if words}),
     )
+
+
+def _command(message: Any) -> Twist | str:
+    """The command in a message, or what is wrong with it."""
+    try:
+        return twist_of(getattr(message, "twist", message))
+    except InputError as error:
+        return str(error)
 
 
 def _odometry(message: Any) -> tuple[float, ...] | str:

@@ -3,6 +3,7 @@
 Each speed is treated on its own. A *stretch* is a time in which its command does not change.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -51,11 +52,22 @@ class Axis:
         ]
 
     def steady(self, begin: float, end: float) -> Floats:
-        """Speeds in the last third of a stretch that is long enough to settle; else none."""
+        """Speeds in the last third of a stretch that is long enough to settle; else none.
+
+        A speed that is still on its way differs from one half of that time to the other.
+        """
         if end - begin < SETTLED:
             return np.empty(0)
         inside = (self.times > end - (end - begin) / 3.0) & (self.times <= end)
-        return self.speeds[inside]
+        part = self.speeds[inside]
+        half = len(part) // 2
+        if half < 2:
+            return part
+        first, last = part[:half], part[-half:]
+        spread = math.hypot(float(np.std(first)), float(np.std(last)))
+        change = abs(float(last.mean() - first.mean()))
+        least = RESOLUTION * float(np.abs(self.speeds).max())
+        return part if change <= ERRORS * spread / half**0.5 + least else np.empty(0)
 
     @cached_property
     def noise(self) -> float:

@@ -46,15 +46,18 @@ OF_ROBOT = (Parameter("limits.v_max", 0.6, 1.0), Parameter("limits.omega_max", 0
 
 
 def start_values(space: Sequence[Parameter], config: NavigatorConfig) -> dict[str, float]:
-    """The values with which the search begins: those of ``config``, and the robot's own limits.
-
-    A value outside its range is moved to the nearer end.
-    """
+    """The values with which the search begins: those of ``config``, and the robot's own limits."""
     own = {name: value for name, _, value in settings_of(config)}
-    return {
-        parameter.name: min(max(own.get(parameter.name, 1.0), parameter.low), parameter.high)
-        for parameter in space
-    }
+    return {parameter.name: own.get(parameter.name, 1.0) for parameter in space}
+
+
+def widened(space: Sequence[Parameter], values: Values) -> tuple[Parameter, ...]:
+    """The parameters, with ranges that have ``values`` in them."""
+    return tuple(
+        Parameter(one.name, low, high, one.log and low > 0.0)
+        for one in space
+        for low, high in [(min(one.low, values[one.name]), max(one.high, values[one.name]))]
+    )
 
 
 def settings_table(values: Values) -> dict[str, Any]:

@@ -1,7 +1,9 @@
 """What a search has found so far, kept in a file so that it goes on where it was stopped."""
 
 import json
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -78,6 +80,27 @@ class State:
         write_json(folder / FILE, {**vars(self), "trials": [vars(one) for one in self.trials]})
 
 
+@contextmanager
+def alone_in(folder: Path) -> Iterator[None]:
+    """Keeps other searches out of a folder; raises InputError if one is running there.
+
+    Where the system has no such locks (Windows) nothing is kept out.
+    """
+    try:
+        from fcntl import LOCK_EX, LOCK_NB, flock
+    except ImportError:
+        yield
+        return
+    held = os.open(folder, os.O_RDONLY)
+    try:
+        flock(held, LOCK_EX | LOCK_NB)
+        yield
+    except BlockingIOError:
+        raise InputError(f"{folder}: another search runs in it: name another --out") from None
+    finally:
+        os.close(held)
+
+
 def load_state(folder: Path, asked: Mapping[str, Any]) -> State:
     """The state in a folder, or a new one. Raises InputError if it is of another search."""
     file = folder / FILE
@@ -87,6 +110,11 @@ def load_state(folder: Path, asked: Mapping[str, Any]) -> State:
         table = json.loads(read_bytes(file, MAX_TEXT_BYTES, InputError))
         trials = [Trial(**one) for one in table.pop("trials")]
         state = State(trials=trials, **table)
+        whole = isinstance(state.asked, dict) and all(
+            isinstance(one.values, dict) and isinstance(one.rows, list) for one in trials
+        )
+        if not whole:
+            raise ValueError("expected the state of a search")
     except (ValueError, TypeError, KeyError, AttributeError) as error:
         raise InputError(f"{file} cannot be read ({error!s:.100}): name another --out") from None
     differ = [name for name, value in jsonable(asked).items() if state.asked.get(name) != value]

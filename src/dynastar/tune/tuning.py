@@ -20,8 +20,8 @@ from dynastar.ros.settings import flat
 from dynastar.tune.objective import MOST_WORLDS
 from dynastar.tune.results import write_results
 from dynastar.tune.search import Plan, Say, Search
-from dynastar.tune.space import OF_ROBOT, SPACE, Values, settings_table, start_values
-from dynastar.tune.state import Row, kept, load_state
+from dynastar.tune.space import OF_ROBOT, SPACE, Values, settings_table, start_values, widened
+from dynastar.tune.state import Row, alone_in, kept, load_state
 from dynastar.tune.verdict import Verdict, judged
 from dynastar.tune.worlds import RobotWorlds, World, suites_of, worlds_of
 
@@ -44,28 +44,33 @@ def tune(task: Task, plan: Plan, folder: Path, workers: Workers = 1, say: Say = 
     """Searches better settings for a task, and writes state, tuned.toml and report.html to ``folder``.
 
     A search that was stopped goes on where it ended. Raises InputError for a folder with another search,
-    and MissingPackage without Optuna.
+    or in which one is running, and MissingPackage without Optuna.
     """
     if not 0 <= task.seed < REPORT_SEEDS:
         raise InputError(f"the seed is {task.seed}: the search takes those below {REPORT_SEEDS}")
     if task.worlds * len(task.suites) > MOST_WORLDS:
         raise InputError(f"the search takes at most {MOST_WORLDS} worlds: fewer --worlds or suites")
-    space = SPACE if task.robot is None else SPACE + OF_ROBOT
     suites = suites_of(task.suites, task.robot, task.config)
-    state = load_state(folder, _asked(task, suites))
-    options = Options(seed=task.seed, data=task.data)
-    worlds = list(worlds_of(suites, options, count=task.worlds))
-    if not worlds:
-        raise InputError("the suites have no world to drive")
-    say(f"{len(worlds)} worlds of {', '.join(suites)}, {len(space)} parameters")
-    drive = partial(driven, options, workers)
-    search = Search(state, folder, start_values(space, task.config), plan, drive, say)
-    search.run(space, worlds)
-    final = options._replace(seed=REPORT_SEEDS + task.seed)
-    search.judge(worlds_of(suites, final, after=task.worlds), FINAL * len(worlds))
-    found = judged(state)
-    write_results(folder, state, space, found, task.robot)
-    return found
+    space = SPACE
+    if any(isinstance(suite, RobotWorlds) for suite in suites.values()):  # others have own robots
+        space += OF_ROBOT
+    begin = start_values(space, task.config)
+    space = widened(space, begin)
+    with alone_in(folder):
+        state = load_state(folder, _asked(task, suites))
+        options = Options(seed=task.seed, data=task.data)
+        worlds = list(worlds_of(suites, options, count=task.worlds))
+        if not worlds:
+            raise InputError("the suites have no world to drive")
+        say(f"{len(worlds)} worlds of {', '.join(suites)}, {len(space)} parameters")
+        drive = partial(driven, options, workers)
+        search = Search(state, folder, begin, plan, drive, say)
+        search.run(space, worlds)
+        final = options._replace(seed=REPORT_SEEDS + task.seed)
+        search.judge(worlds_of(suites, final, after=task.worlds), FINAL * len(worlds))
+        found = judged(state)
+        write_results(folder, state, space, found, task.robot)
+        return found
 
 
 def driven(

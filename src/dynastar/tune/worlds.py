@@ -30,6 +30,8 @@ from dynastar.ros.settings import flat, nested, robot_from, robot_table
 from dynastar.simulation import Noise, Scenario
 from dynastar.tune.space import Values, limited
 
+MOST_LEFT_OUT = 100  # worlds in a row, after which none is expected
+
 DRAWN = ("random", "people")  # suites whose worlds can be drawn for any robot
 
 
@@ -205,6 +207,11 @@ def _some(
 
 def _kept(name: str, known: "str | RobotWorlds", options: Options) -> Iterator[World]:
     suite: Suite = load_suite(known) if isinstance(known, str) else known
+    left_out = 0  # in a row
     for mission in suite.missions(options):
-        if not suite.leave_out(mission, options):
+        reason = suite.leave_out(mission, options)
+        if not reason:
             yield World(name, known, mission, options.seed)
+        left_out = left_out + 1 if reason else 0
+        if left_out == MOST_LEFT_OUT:
+            raise InputError(f"the suite {name} leaves out {left_out} worlds in a row: {reason}")
