@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from dynastar import io
+from dynastar.writing import written_aside
 
 Record = dict[str, dict[str, Any]]  # of each part: tree, commit, machine, date, minutes, complete
 
@@ -48,7 +49,7 @@ def keep(folder: Path, kept: Path, tree: str, data: str) -> None:
     for old in set(kept.rglob(f"*{PACKED}")) - set(packed):
         old.unlink()
     for name, file in packed.items():
-        with io.written_aside(name) as aside:
+        with written_aside(name) as aside:
             aside.write_bytes(
                 gzip.compress(file.read_bytes().replace(data.encode(), DATA), mtime=0)
             )
@@ -62,6 +63,6 @@ def restore(kept: Path, folder: Path, tree: str, data: str) -> None:
         if of["tree"] != tree or record.get(part, {}).get("tree") == tree:
             continue
         for file in files_of(part, of["complete"], kept, PACKED):
-            with io.written_aside(folder / file.relative_to(kept).with_suffix("")) as aside:
+            with written_aside(folder / file.relative_to(kept).with_suffix("")) as aside:
                 aside.write_bytes(gzip.decompress(file.read_bytes()).replace(DATA, data.encode()))
         io.write_json(folder / RECORD, record := {**record, part: of})

@@ -16,10 +16,10 @@ import simulators_page as simulators
 from results_parts import MAPS_BESIDE, parts
 from results_targets import TARGETS, targets_table
 
-from dynastar import io
 from dynastar.bench.figures import FIGURES
 from dynastar.bench.report import report_targets
 from dynastar.bench.tables import as_markdown, fill
+from dynastar.writing import written_aside
 
 Found = Mapping[str, Any]  # the result of each part
 Record = Mapping[str, Mapping[str, Any]]  # of each part: tree, commit, machine, date, minutes
@@ -167,7 +167,7 @@ def write(root: Path, found: Found, record: Record) -> list[str]:
         for block in blocks:
             document = fill(document, block.name, block.text(found).strip(), file)
         document = fill(document, "measured", header(page, record), file)
-        with io.written_aside(file) as aside:
+        with written_aside(file) as aside:
             aside.write_text(document, encoding="utf-8")
         missing = [name for name in parts_of(page) if name not in found]
         left = f"; missing: {', '.join(missing)}" if missing else ""

@@ -2,6 +2,7 @@
 
 import pytest
 
+from dynastar.errors import InputError
 from dynastar.footprint import Footprint
 
 
@@ -23,3 +24,9 @@ def test_the_half_width_is_across_the_driving_direction(
 
 def test_a_disc_is_as_wide_as_its_radius_says():
     assert Footprint.disc(0.2).half_width == 0.2
+
+
+@pytest.mark.parametrize("radius", [10**400, "0.2", None, -0.1, float("nan")])
+def test_a_radius_that_is_no_length_is_refused(radius):
+    with pytest.raises(InputError, match="radius"):
+        Footprint.disc(radius)

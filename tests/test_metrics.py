@@ -167,6 +167,14 @@ def test_a_moving_obstacle_that_jumps_is_nowhere_between():
     assert measure(made).nearest == pytest.approx(6.5)
 
 
+def test_a_tick_that_is_told_twice_counts_once():
+    path = np.array([[3.0, 0.0], [2.0, 0.0], [1.0, 0.0], [1.0, 0.0]])
+    made = episode(np.zeros((4, 2)), movers=path[:, None], mover_radii=np.array([0.2]))
+    times = np.array([10.0, 11.0, 12.0, 12.0])
+    made = replace(made, trajectory=replace(made.trajectory, times=times))
+    assert measure(made).nearest == pytest.approx(0.5)
+
+
 def test_goals_count_in_order():
     line = [(0, 0), (2, 0), (4, 0)]
     goals = np.array([[2.0, 0.1], [4.0, 0.0], [9.0, 9.0]])

@@ -1,6 +1,7 @@
 """Ticks of an episode and numbers of a result as tables."""
 
 import csv
+import os
 import sys
 from types import ModuleType
 
@@ -40,9 +41,23 @@ def test_a_result_is_one_row(tmp_path):
     assert (row["outcome"], float(row["length"])) == ("arrived", result.length)
 
 
+def test_folders_that_are_missing_are_made(tmp_path):
+    EPISODE.to_csv(tmp_path / "no" / "ticks.csv")
+    assert len(rows_of(tmp_path / "no" / "ticks.csv")) == len(EPISODE.trajectory.times)
+
+
 def test_a_file_that_cannot_be_written_is_named(tmp_path):
-    with pytest.raises(InputError, match=r"no/ticks.csv: cannot be written: No such file"):
-        EPISODE.to_csv(tmp_path / "no" / "ticks.csv")
+    (tmp_path / "file").write_text("")
+    os.mkfifo(tmp_path / "pipe")
+    for name, said in (
+        ("file/ticks.csv", r"ticks.csv: cannot be written"),
+        ("pipe", "is no regular file"),
+        (".", "is no regular file"),
+    ):
+        with pytest.raises(InputError, match=said):
+            EPISODE.to_csv(tmp_path / name)
+    with pytest.raises(InputError, match="name"):
+        EPISODE.to_csv("")
 
 
 def test_a_file_that_is_cut_off_in_writing_leaves_the_old_one(tmp_path):

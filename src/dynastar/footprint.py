@@ -133,7 +133,7 @@ def _numbers(values: Any) -> npt.NDArray[np.float64] | None:
     try:
         if not isinstance(values, str):
             return np.array(values, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (OverflowError, TypeError, ValueError):
         pass
     return None
 

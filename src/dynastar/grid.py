@@ -12,7 +12,7 @@ import numpy.typing as npt
 from dynastar.config import summary
 from dynastar.errors import ConfigError, MapError, OutOfMap
 from dynastar.extras import plotter
-from dynastar.geometry import place
+from dynastar.geometry import length, place
 
 if TYPE_CHECKING:  # Matplotlib comes with an extra
     from matplotlib.axes import Axes
@@ -257,9 +257,7 @@ class OccupancyGrid:
         far = np.array([[0, 0], [0, self.columns], [self.rows, 0], [self.rows, self.columns]])
         low = self.frame.points_to_world(far).min(axis=0)
         high = self.frame.points_to_world(far).max(axis=0)
-        return "x {:.10g} to {:.10g}, y {:.10g} to {:.10g} m".format(
-            *np.column_stack([low, high]).ravel().round(3)
-        )
+        return "x {} to {}, y {} to {} m".format(*map(length, np.column_stack([low, high]).ravel()))
 
     def refined(self, factor: int) -> "OccupancyGrid":
         """The same map with every cell cut into ``factor`` x ``factor``."""

@@ -179,7 +179,8 @@ def _between(ticks: Floats, places: Floats, times: Floats) -> Floats:
     if len(ticks) < 2:
         return places[np.zeros(len(times), np.intp)]
     leg = np.clip(np.searchsorted(ticks, times, side="right") - 1, 0, len(ticks) - 2)
-    part = (times - ticks[leg]) / (ticks[leg + 1] - ticks[leg])
+    span = ticks[leg + 1] - ticks[leg]
+    part = np.divide(times - ticks[leg], span, out=np.ones(len(times)), where=span > 0.0)
     part = np.where(jumped(ticks, places)[leg], np.rint(part), part)[:, None]
     between = places[leg] + part * (places[leg + 1] - places[leg])
     return np.where(part == 0.0, places[leg], np.where(part == 1.0, places[leg + 1], between))

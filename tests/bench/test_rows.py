@@ -49,9 +49,14 @@ def test_a_line_that_was_cut_off_is_made_again(tmp_path):
 
 def test_rows_that_are_dropped_are_made_again(tmp_path):
     file = tmp_path / "rows.jsonl"
-    drop_rows(file, lambda row: True)
-    assert not file.exists()
     jobs = [("a", n) for n in range(4)]
+    drop_rows(file, SETTINGS, jobs, lambda row: True)
+    assert not file.exists()
     made(file, jobs)
-    drop_rows(file, lambda row: row["square"] > 3)
+    drop_rows(file, SETTINGS, jobs, lambda row: row["square"] > 3)
     assert made(file, jobs) == 2
+    drop_rows(file, SETTINGS, jobs[:1], lambda row: True)
+    assert made(file, jobs) == 1
+    before = file.read_bytes()
+    drop_rows(file, {**SETTINGS, "seed": 1}, jobs, lambda row: True)
+    assert file.read_bytes() == before

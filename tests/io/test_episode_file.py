@@ -15,8 +15,9 @@ import pytest
 from dynastar.episode import Episode, Trace
 from dynastar.errors import DynastarWarning, EpisodeError, InputError
 from dynastar.geometry import Pose2D
-from dynastar.io import episode_file, load_episode, save_episode, write_json, written_aside
+from dynastar.io import episode_file, load_episode, save_episode, write_json
 from dynastar.io.archive import MAX_MEMBERS
+from dynastar.writing import written_aside
 from episodes import episode
 
 

@@ -58,6 +58,36 @@ def test_a_frozen_lidar_is_tried_again_more_and_more_seldom_slowly_and_not_far()
     assert math.dist(at[:2], drive.pose[:2]) < 0.1 * moves
 
 
+@pytest.mark.parametrize(
+    ("v_least", "omega_least", "asked", "slow"),
+    [
+        (0.0, 0.0, (0.5, 0.2), (0.1, 0.04)),
+        (0.1, 0.0, (0.38, 0.2), (0.1, 0.2 * 0.1 / 0.38)),
+        (0.2, 0.0, (0.5, 0.1), (0.2, 0.04)),
+        (0.0, 0.1, (0.3, 0.2), (0.15, 0.1)),
+        (0.0, 0.1, (0.0, 1.0), (0.0, 0.3)),
+        (0.1, 0.1, (0.1, 0.1), (0.1, 0.1)),
+    ],
+)
+def test_what_is_tried_is_slow_and_a_speed_that_the_drive_follows(
+    v_least, omega_least, asked, slow
+):
+    limits = ROUND.limits._replace(v_least=v_least, omega_least=omega_least)
+    drive = under_way(robot=replace(ROUND, limits=limits))
+    drive.twist = Twist(0.0, 0.0)
+    sensing = drive.navigator.sensing
+    state = RobotState(drive.now, drive.pose, drive.twist)
+    command = Twist(*asked)
+    assert sensing.on_trial(state, command) == command
+    for source in sensing.feed._sources.values():
+        source.is_frozen = True
+    tried = sensing.on_trial(state, command)
+    assert tried == pytest.approx(slow)
+    for speed, least in zip(tried, (v_least, omega_least), strict=True):
+        assert speed == 0.0 or speed >= least
+    assert sensing.on_trial(state, None) is None
+
+
 def test_a_robot_whose_wheels_slipped_finds_out_that_its_lidar_is_not_frozen():
     """The odometry tells of 0.3 m that were not driven; scans without noise stay the same meanwhile."""
     drive = under_way()

@@ -117,6 +117,8 @@ def test_a_blocked_start_is_left_if_the_robot_has_a_size():
 def test_errors_have_names_and_say_what_is_wrong():
     with pytest.raises(OutOfMap, match=r"the goal \(5, 0.2\) is off the map, which spans x 0 to 2"):
         plan(room(), (0.3, 0.2), (5.0, 0.2))
+    with pytest.raises(OutOfMap, match=r"the goal \(2.0004, 0.2\) is off the map"):
+        plan(room(), (0.3, 0.2), (2.0004, 0.2))
     with pytest.raises(OutOfMap, match="the start"):
         plan(room(), (-0.01, 0.2), (0.3, 0.2))
     with pytest.raises(OutOfMap):

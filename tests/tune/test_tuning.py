@@ -100,8 +100,9 @@ def test_one_search_at_a_time_is_in_a_folder(tmp_path):
         alone_in(tmp_path),
     ):
         pass
-    with alone_in(tmp_path):
-        pass
+    for folder in (tmp_path, tmp_path / "not" / "there"):
+        with alone_in(folder):
+            assert folder.is_dir()
 
 
 @pytest.mark.parametrize("text", ['{"asked": [], "trials": []}', '{"asked": null, "trials": []}'])

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, Protocol
 
 from dynastar.bench.workers import Workers
 from dynastar.errors import DataError
-from dynastar.io.paths import local_path
+from dynastar.paths import local_path
 from dynastar.simulation.scenario import Attention
 
 

@@ -21,9 +21,9 @@ from dynastar.bench.arms import BASE
 from dynastar.bench.families import KINDS
 from dynastar.bench.figures import SUFFIXES, draw_all
 from dynastar.bench.tables import Table, as_markdown
-from dynastar.io.files import written_aside
 from dynastar.viewer.sheet import save
 from dynastar.viewer.spread import Column, Spread, draw_columns, draw_parts, draw_spreads
+from dynastar.writing import written_aside
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

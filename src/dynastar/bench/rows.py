@@ -7,8 +7,9 @@ from typing import Any
 
 from dynastar.bench.workers import Workers, completed
 from dynastar.errors import InputError
-from dynastar.io.files import MAX_TEXT_BYTES, jsonable, read_bytes, written_aside
+from dynastar.io.files import MAX_TEXT_BYTES, jsonable, read_bytes
 from dynastar.terminal import progress_bar
+from dynastar.writing import written_aside
 
 
 def collect(
@@ -50,11 +51,17 @@ def collect(
     return [done[key] for key in keys]
 
 
-def drop_rows(file: Path, unwanted: Callable[[dict[str, Any]], bool]) -> None:
-    """Take out of a file that ``collect`` has begun the rows that are to be made again."""
+def drop_rows(
+    file: Path,
+    settings: dict[str, Any],
+    jobs: Sequence[Any],
+    unwanted: Callable[[dict[str, Any]], bool],
+) -> None:
+    """Take out of a file that ``collect`` has begun the rows of ``jobs`` that are to be made again."""
     first, done = _read(file)
-    if any(map(unwanted, done.values())):
-        _write(file, first, {key: row for key, row in done.items() if not unwanted(row)})
+    again = {key for key in map(_key, jobs) if key in done and unwanted(done[key])}
+    if first == jsonable(settings) and again:
+        _write(file, settings, {key: row for key, row in done.items() if key not in again})
 
 
 def _key(job: Any) -> str:

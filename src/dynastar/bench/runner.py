@@ -78,8 +78,9 @@ def run_jobs(
     work = partial(_timed, options)
     with tempfile.TemporaryDirectory() as folder:
         file = keep or Path(folder) / "rows.jsonl"
-        if options.observe is not None:  # of failures, which are observed only as they are driven
-            drop_rows(file, lambda row: not succeeded(row))
+        if options.observe is not None:  # a failure is observed only as it is driven
+            observed = [job for job in jobs if job.controller == options.controller]
+            drop_rows(file, settings, observed, lambda row: not succeeded(row))
         rows = collect(name, work, jobs, file, settings, options.workers, progress)
     times = [row.pop("cpu_s") for row in rows]
     return rows, times
@@ -95,9 +96,10 @@ def result_of(
 ) -> dict[str, Any]:
     """Result of a suite for JSON; ``seconds`` are ``wall_s`` of this run and ``cpu_s`` of all missions."""
     published = getattr(suite, "PUBLISHED", ())
+    presets = {row["preset"] for row in rows if row["outcome"] != "error"}
     return {
         "suite": name,
-        "preset": ", ".join(sorted({row["preset"] for row in rows})) or "default",
+        "preset": options.preset or ", ".join(sorted(presets)) or "default",
         **{key: getattr(options, key) for key in ("seed", "ideal", "controller", "legs")},
         "attention": options.attention or getattr(suite, "ATTENTION", "none"),
         "settings": dict(options.settings),

@@ -7,7 +7,8 @@ from pathlib import Path
 from dynastar.check.checking import Check
 from dynastar.errors import MissingPackage
 from dynastar.extras import require
-from dynastar.io.files import write_json, written_aside
+from dynastar.io.files import write_json
+from dynastar.writing import written_aside
 
 PAGE = "report.html"
 STYLE = """\

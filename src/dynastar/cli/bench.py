@@ -11,11 +11,12 @@ from dynastar import io
 from dynastar.bench.suites import SUITES, load_suite
 from dynastar.cli.arguments import ATTENTIONS, PRESETS, add_set
 from dynastar.cli.outputs import check_file, make_folder
-from dynastar.cli.parsing import count, path, replayed, seed
+from dynastar.cli.parsing import count, path, refuse_unheard, replayed, seed
 from dynastar.cli.show import as_json, as_table
 from dynastar.config import choose
 from dynastar.errors import InputError
 from dynastar.extras import require
+from dynastar.writing import written_aside
 
 if TYPE_CHECKING:
     from dynastar.bench.missions import Options
@@ -42,6 +43,14 @@ extras are there, also by the other controllers that are installed, and writes a
 into DIR. `compare` takes two results of the
 same missions and says for each suite whether the second is better, worse or not clearly different."""
 
+# Options with their defaults: which missions are run, and how they are driven.
+CHOOSING: dict[str, object] = {
+    "select": None, "missions": None, "repeat": 1, "quick": False, "save_failures": None,
+}  # fmt: skip
+DRIVING: dict[str, object] = {
+    "controller": None, "set": [], "save_failures": None, "ideal": False, "attention": None,
+    "legs": False,
+}  # fmt: skip
 COMMANDS = {"all": "run every suite", "compare": "compare two results"}
 
 
@@ -148,7 +157,7 @@ def execute(arguments: argparse.Namespace) -> int:
         return _run_all(arguments)
     choose(arguments.suite, {**SUITES, **COMMANDS}, "suite")
     if arguments.replay is not None:
-        _refuse_replayed(arguments)
+        refuse_unheard(arguments, CHOOSING, "has no effect with --replay, which runs one mission")
         return _replay(arguments, _options(arguments))
     return _run(arguments, _options(arguments))
 
@@ -160,7 +169,9 @@ def _run(arguments: argparse.Namespace, options: "Options") -> int:
 
     suite = load_suite(arguments.suite)
     if not hasattr(suite, "scenario"):
-        _refuse_driving(arguments)
+        refuse_unheard(
+            arguments, DRIVING, f"has no effect: the suite {arguments.suite} drives nothing"
+        )
     file = check_file("--json-out", arguments.json_out)
     if arguments.out is not None:
         raise InputError(
@@ -200,7 +211,7 @@ def _run_all(arguments: argparse.Namespace) -> int:
     _write(result, file, keep)
     save(scoreboard.picture(result), folder / "all.png")
     text = "\n\n".join(map(as_text, (table(result), quality_table(result))))
-    with io.written_aside(folder / "all.txt") as aside:
+    with written_aside(folder / "all.txt") as aside:
         aside.write_text(text + "\n", encoding="utf-8")
     print(as_json(result) if arguments.json_out == "-" else text)
     print(f"the table and the picture are in {folder}, all rows in {file}", file=sys.stderr)
@@ -271,33 +282,6 @@ def _options(arguments: argparse.Namespace) -> "Options":
         legs=arguments.legs,
         observe=observe,
     )
-
-
-def _refuse_replayed(arguments: argparse.Namespace) -> None:
-    """Refuses options that say which missions are run, beside --replay."""
-    asked = {
-        "--select": arguments.select is not None,
-        "--missions": arguments.missions is not None,
-        "--repeat": arguments.repeat != 1,
-        "--quick": arguments.quick,
-        "--save-failures": arguments.save_failures is not None,
-    }
-    for option in (name for name, given in asked.items() if given):
-        raise InputError(f"{option} has no effect with --replay, which runs one mission")
-
-
-def _refuse_driving(arguments: argparse.Namespace) -> None:
-    """Refuses options that a suite which drives nothing would leave unheard."""
-    asked = {
-        "--controller": arguments.controller is not None,
-        "--set": arguments.set,
-        "--save-failures": arguments.save_failures is not None,
-        "--ideal": arguments.ideal,
-        "--attention": arguments.attention,
-        "--legs": arguments.legs,
-    }
-    for option in (name for name, given in asked.items() if given):
-        raise InputError(f"{option} has no effect: the suite {arguments.suite} drives nothing")
 
 
 def _beside(file: Path) -> Path:

@@ -7,7 +7,7 @@ from typing import Any
 
 from dynastar.errors import InputError
 from dynastar.extras import require
-from dynastar.io.paths import local_path
+from dynastar.paths import local_path
 
 MOST_TEXT = 2**20  # bytes, of a file that may name others
 PICTURES = ".png", ".svg", ".pdf"
@@ -46,7 +46,7 @@ def _read_with(file: Path, found: frozenset[Path] = frozenset()) -> frozenset[Pa
             return found
         names = file.suffix.lower() in NAMING and file.stat().st_size < MOST_TEXT
         table = NAMING[file.suffix.lower()](file) if names else {}
-    except (OSError, ValueError, InputError):  # no name that a file can have, or nothing to be read
+    except (OSError, RuntimeError, ValueError, InputError):  # no file's name, a loop, or no table
         return found
     found |= {file.resolve()}
     for name in _strings(table):

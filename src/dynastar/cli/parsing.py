@@ -64,7 +64,7 @@ def _unknown(word: str, options: "Iterable[str]") -> str:
 
 def path(text: str) -> "Path":
     """A file or folder: a path, which may start with ``~``, or a ``file://`` URL."""
-    from dynastar.io.paths import local_path
+    from dynastar.paths import local_path
 
     return local_path(text)
 
@@ -121,4 +121,4 @@ def refuse_unheard(
     """Raises InputError for an option that was given though nothing would come of it."""
     for name, default in defaults.items():
         if getattr(arguments, name) != default:
-            raise InputError(f"--{name} {why}")
+            raise InputError(f"--{name.replace('_', '-')} {why}")

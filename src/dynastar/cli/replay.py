@@ -14,6 +14,7 @@ from dynastar.cli.show import as_json, side_by_side
 from dynastar.config import choose
 from dynastar.errors import InputError, MissingPackage
 from dynastar.extras import require
+from dynastar.writing import written_aside
 
 if TYPE_CHECKING:
     from dynastar.geometry import Goal
@@ -153,7 +154,7 @@ def write_folder(folder: Path, found: "Mapping[str, Replay]", summaries: Mapping
     if np.isfinite(first.recorded).any():
         series = {"recorded": first.recorded, **series}
     with (
-        io.written_aside(folder / "commands.csv") as aside,
+        written_aside(folder / "commands.csv") as aside,
         aside.open("w", newline="", encoding="utf-8") as file,
     ):
         table = csv.writer(file)

@@ -13,6 +13,7 @@ from dynastar.cli.outputs import check_file, make_folder
 from dynastar.cli.parsing import count, number, path, refuse_unheard, seed
 from dynastar.errors import InputError, ScenarioError
 from dynastar.extras import require
+from dynastar.writing import written_aside
 
 DESCRIPTION = (
     "Searches better settings for a robot by driving simulated missions, and says whether they "
@@ -125,7 +126,7 @@ def _measure(arguments: argparse.Namespace) -> int:
         told = changes(NavigatorConfig(), config)
     found = measured(read_drive(arguments.bag, topic_table(arguments.topic, TOPICS)), robot)
     print(found.words())
-    with io.written_aside(file) as aside:
+    with written_aside(file) as aside:
         aside.write_text(robot_toml(found, Path(arguments.bag).name, told), encoding="utf-8")
         try:
             io.load_robot(aside)

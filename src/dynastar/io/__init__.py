@@ -15,7 +15,6 @@ _WHERE = {
     "save_ros_map": "ros_map",
     "save_scenario": "scenario_writing",
     "write_json": "files",
-    "written_aside": "files",
 }
 
 TYPE_CHECKING = False
@@ -24,7 +23,6 @@ if TYPE_CHECKING:  # what _WHERE has, for type checkers
     from dynastar.io.episode_file import save_episode as save_episode
     from dynastar.io.files import jsonable as jsonable
     from dynastar.io.files import write_json as write_json
-    from dynastar.io.files import written_aside as written_aside
     from dynastar.io.maps import load_map as load_map
     from dynastar.io.maps import save_map as save_map
     from dynastar.io.movingai import load_movingai_map as load_movingai_map

@@ -18,9 +18,10 @@ from dynastar.episode import Episode, EventRecord, PlanRecord, Trace
 from dynastar.errors import DynastarWarning, EpisodeError, MapError
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.io.archive import Arrays, arrays_before_cut, arrays_in
-from dynastar.io.files import read_bytes, written_aside
-from dynastar.io.paths import local_path
+from dynastar.io.files import read_bytes
 from dynastar.path import Trajectory
+from dynastar.paths import local_path
+from dynastar.writing import written_aside
 
 VERSION = 1
 MAX_EPISODE_BYTES = 2**29  # unpacked

@@ -1,11 +1,8 @@
-"""Reading whole files within limits, and writing them so that nobody ever sees half of one."""
+"""Reading whole files within limits, and writing JSON."""
 
 import json
 import math
-import os
-import secrets
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +10,7 @@ import numpy as np
 
 from dynastar.errors import InputError, MapError
 from dynastar.grid import MAX_CELLS
-from dynastar.io.paths import local_path
+from dynastar.writing import reason_of, written_aside
 
 MAX_BYTES = 4 * MAX_CELLS  # of a map's image
 MAX_TEXT_BYTES = 128 * 2**20  # of a map drawn in text
@@ -37,7 +34,7 @@ def read_bytes(path: Path, limit: int, error: type[InputError]) -> bytes:
             raise error(f"{path}: the file is empty")
         return path.read_bytes()
     except (OSError, ValueError) as trouble:
-        raise error(f"{path!s:.200}: cannot be read ({_reason(trouble)})") from None
+        raise error(f"{path!s:.200}: cannot be read ({reason_of(trouble)})") from None
 
 
 def check_size(rows: int, columns: int, path: Path) -> None:
@@ -46,32 +43,6 @@ def check_size(rows: int, columns: int, path: Path) -> None:
         raise MapError(f"{path}: the map is {columns} x {rows} cells, both have to be 1 or more")
     if rows * columns > MAX_CELLS:
         raise MapError(f"{path}: the map is {columns} x {rows} cells, at most {MAX_CELLS} are read")
-
-
-@contextmanager
-def written_aside(path: str | Path, error: type[InputError] = InputError) -> Iterator[Path]:
-    """A path beside ``path``, of the same suffix, to write to: renamed to ``path`` at the end.
-
-    A link is followed; what is there and no regular file is refused.
-    On any exception it is deleted instead. Folders that are missing are made. Raises ``error``
-    where the system refuses.
-    """
-    path = local_path(path, error)
-    try:
-        path = path.resolve() if path.is_symlink() else path
-        if path.exists() and not path.is_file():
-            raise error(f"{path}: is no regular file; name another")
-    except OSError as trouble:
-        raise error(f"{path!s:.200}: cannot be written ({_reason(trouble)})") from None
-    aside = path.with_name(f".{path.stem}.{secrets.token_hex(4)}.aside{path.suffix}")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        yield aside
-        os.replace(aside, path)
-    except OSError as trouble:
-        raise error(f"{path}: cannot be written ({_reason(trouble)})") from None
-    finally:
-        _remove(aside)
 
 
 def jsonable(data: Any) -> Any:
@@ -101,14 +72,3 @@ def write_json(path: str | Path, data: Any) -> None:
     text = json.dumps(jsonable(data), indent=2, allow_nan=False, ensure_ascii=False)
     with written_aside(path) as aside:
         aside.write_text(text + "\n", encoding="utf-8")
-
-
-def _reason(trouble: Exception) -> str:
-    return getattr(trouble, "strerror", None) or str(trouble)
-
-
-def _remove(path: Path) -> None:
-    try:
-        path.unlink(missing_ok=True)
-    except OSError:  # the folder itself is not there, or not ours: nothing was written
-        return

@@ -10,11 +10,12 @@ import numpy.typing as npt
 
 from dynastar.errors import DynastarWarning, MapError
 from dynastar.grid import FREE, MOST_DRAWN, OCCUPIED, UNKNOWN, OccupancyGrid
-from dynastar.io.files import MAX_BYTES, MAX_TEXT_BYTES, check_size, read_bytes, written_aside
+from dynastar.io.files import MAX_BYTES, MAX_TEXT_BYTES, check_size, read_bytes
 from dynastar.io.movingai import check_plain, load_movingai_map, save_movingai_map
 from dynastar.io.npy import read_npy
-from dynastar.io.paths import local_path
 from dynastar.io.ros_map import load_ros_map, not_a_map, save_ros_map
+from dynastar.paths import local_path
+from dynastar.writing import written_aside
 
 T = TypeVar("T")
 

@@ -14,8 +14,9 @@ import numpy.typing as npt
 from dynastar.config import Field, checked
 from dynastar.errors import ConfigError, MapError, OutOfMap
 from dynastar.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
-from dynastar.io.files import MAX_BYTES, MAX_ROWS_BYTES, check_size, read_bytes, written_aside
-from dynastar.io.paths import local_path
+from dynastar.io.files import MAX_BYTES, MAX_ROWS_BYTES, check_size, read_bytes
+from dynastar.paths import local_path
+from dynastar.writing import written_aside
 
 PASSABLE, BLOCKED = b".GS", b"@OTW"
 _HEADER = re.compile(

@@ -20,11 +20,12 @@ import yaml
 from dynastar.config import Field, checked, nearest
 from dynastar.errors import ConfigError, DynastarWarning, MapError
 from dynastar.grid import FREE, OCCUPIED, UNKNOWN, GridFrame, OccupancyGrid
-from dynastar.io.files import MAX_BYTES, MAX_HEADER_BYTES, read_bytes, written_aside
-from dynastar.io.paths import local_path
+from dynastar.io.files import MAX_BYTES, MAX_HEADER_BYTES, read_bytes
 from dynastar.io.pgm import read_pgm, write_pgm
 from dynastar.io.png import SIGNATURE, read_png, write_png
 from dynastar.io.yaml_table import read_yaml
+from dynastar.paths import local_path
+from dynastar.writing import written_aside
 
 Mode = Literal["trinary", "scale", "raw"]
 _IMAGES = (".pgm", ".png")

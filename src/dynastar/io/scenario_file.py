@@ -20,11 +20,11 @@ from dynastar.geometry import Goal
 from dynastar.grid import OccupancyGrid
 from dynastar.io.files import MAX_TABLE_BYTES, read_bytes
 from dynastar.io.maps import load_map
-from dynastar.io.paths import local_path
 from dynastar.io.scenario_tables import MapTable, PlaceTable, RobotTable, ScenarioTable
 from dynastar.io.scenario_things import contains, read_mover, read_obstacle
 from dynastar.masks import SpeedScale, with_keepout, with_speed_limits
 from dynastar.navigator import NavigatorConfig
+from dynastar.paths import local_path
 from dynastar.planning import ALGORITHMS
 from dynastar.robot import ROBOTS, Lidar, Limits, Robot
 from dynastar.simulation.run import effective_config

@@ -11,12 +11,13 @@ import numpy.typing as npt
 from dynastar.errors import ScenarioError
 from dynastar.extras import require
 from dynastar.grid import OccupancyGrid
-from dynastar.io.files import MAX_TABLE_BYTES, written_aside
+from dynastar.io.files import MAX_TABLE_BYTES
 from dynastar.io.maps import save_map
-from dynastar.io.paths import local_path
+from dynastar.paths import local_path
 from dynastar.robot import ROBOTS, Robot
 from dynastar.simulation.imperfections import PERFECT
 from dynastar.simulation.scenario import Mover, Scenario
+from dynastar.writing import written_aside
 
 FILE = "scenario.toml"
 Floats = npt.NDArray[np.float64]

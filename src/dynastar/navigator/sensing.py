@@ -96,16 +96,15 @@ class Sensing:
     def on_trial(self, state: RobotState, command: Twist | None) -> Twist | None:
         """The command, slowed while the robot tries whether a lidar is really frozen.
 
-        A faster robot brakes when its data are too old. What is too slow for the drive is a stop.
+        A faster robot brakes when its data are too old. Both speeds stay such that the drive follows them.
         """
         limits = self.robot.limits
-        most = Twist(max(TRIAL.v, limits.v_least), max(TRIAL.omega, limits.omega_least))
-        if command is None or not self.feed.is_frozen or abs(state.twist.v) >= 2.0 * most.v:
+        is_fast = abs(state.twist.v) >= 2.0 * max(TRIAL.v, limits.v_least)
+        if command is None or is_fast or not self.feed.is_frozen:
             return command
-        v, omega = slowed(command, most)
-        if 0.0 < abs(v) < limits.v_least or 0.0 < abs(omega) < limits.omega_least:
-            return None
-        return Twist(v, omega)
+        v, omega = abs(command.v), abs(command.omega)
+        least = max(_share(limits.v_least, v), _share(limits.omega_least, omega))
+        return slowed(command, Twist(max(TRIAL.v, least * v), max(TRIAL.omega, least * omega)))
 
     def update(
         self, state: RobotState, scans: Sequence[LaserScan], trusts_map: bool = False
@@ -209,3 +208,8 @@ class Sensing:
         for disc in left:
             self.local_map.erase(disc)
         self.local_map.see(view, moving)
+
+
+def _share(least: float, speed: float) -> float:
+    """The fraction of a speed that a drive follows at the least, above rounding; 0 of rest."""
+    return (1.0 + 1e-9) * least / speed if speed > 0.0 else 0.0

@@ -14,8 +14,9 @@ import numpy as np
 from dynastar.dwa.dwa import REFUSALS, TERMS
 from dynastar.episode import Episode, Trace
 from dynastar.errors import InputError
-from dynastar.io.files import jsonable, written_aside
+from dynastar.io.files import jsonable
 from dynastar.page.packing import filled, grid_data, packed, runs, words
+from dynastar.writing import written_aside
 
 SCRIPTS = ("scene.js", "charts.js", "legend.js", "panel.js", "report.js")
 MOST = 2  # episodes side by side

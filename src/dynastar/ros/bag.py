@@ -15,7 +15,7 @@ import numpy as np
 
 from dynastar.errors import DataError, DynastarWarning
 from dynastar.extras import require
-from dynastar.io.paths import local_path
+from dynastar.paths import local_path
 from dynastar.ros.aside import AsideFolder
 from dynastar.ros.cut_bag import has_journal, read_cut
 

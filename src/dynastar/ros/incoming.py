@@ -96,7 +96,7 @@ def grid_of(message: Any, frame: str) -> OccupancyGrid:
 
 
 def refusals(refused: Mapping[str, Sequence[str]]) -> tuple[str, ...]:
-    """How many messages of each topic were refused, and why the first was, in words."""
+    """A sentence for each topic: how many of its messages were refused, and why the first was."""
     return tuple(
         f"of {topic} {counted(len(words), 'message')} refused, the first since {words[0]}"
         for topic, words in refused.items()

@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from dynastar.io.files import written_aside
 from dynastar.robot import Robot
 from dynastar.tune.sampler import importances
 from dynastar.tune.space import Parameter, limited, settings_table
 from dynastar.tune.state import State, Trial
 from dynastar.tune.toml import rounded, toml_text
 from dynastar.tune.verdict import Verdict
+from dynastar.writing import written_aside
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -3,7 +3,7 @@
 import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -84,8 +84,9 @@ class State:
 def alone_in(folder: Path) -> Iterator[None]:
     """Keeps other searches out of a folder; raises InputError if one is running there.
 
-    Where the system has no such locks (Windows) nothing is kept out.
+    Where the system or the file system has no such locks nothing is kept out.
     """
+    folder.mkdir(parents=True, exist_ok=True)
     try:
         from fcntl import LOCK_EX, LOCK_NB, flock
     except ImportError:
@@ -93,10 +94,14 @@ def alone_in(folder: Path) -> Iterator[None]:
         return
     held = os.open(folder, os.O_RDONLY)
     try:
-        flock(held, LOCK_EX | LOCK_NB)
+        with suppress(OSError):
+            try:
+                flock(held, LOCK_EX | LOCK_NB)
+            except BlockingIOError:
+                raise InputError(
+                    f"{folder}: another search runs in it: name another --out"
+                ) from None
         yield
-    except BlockingIOError:
-        raise InputError(f"{folder}: another search runs in it: name another --out") from None
     finally:
         os.close(held)
 

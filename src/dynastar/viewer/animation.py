@@ -12,13 +12,13 @@ from PIL.ImageColor import getrgb
 
 from dynastar.episode import Episode
 from dynastar.errors import InputError
-from dynastar.io.files import written_aside
-from dynastar.io.paths import local_path
 from dynastar.metrics import measure
+from dynastar.paths import local_path
 from dynastar.terminal import progress_bar
 from dynastar.viewer import palette, scene
 from dynastar.viewer.canvas import FINE, Canvas, letters_font
 from dynastar.viewer.view import mission_view
+from dynastar.writing import written_aside
 
 Floats = npt.NDArray[np.float64]
 

@@ -9,10 +9,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from dynastar.errors import InputError
-from dynastar.io.files import written_aside
-from dynastar.io.paths import local_path
+from dynastar.paths import local_path
 from dynastar.terminal import printable
 from dynastar.viewer import palette
+from dynastar.writing import written_aside
 
 FORMATS = (".png", ".svg", ".pdf")
 COLUMN, PAGE = 3.3, 6.9  # inches: a column of a two-column page, and the page

@@ -45,3 +45,12 @@ def test_a_run_that_goes_on_drives_files_that_are_new_or_changed(tmp_path):
     (folder / "b.toml").write_text(text, encoding="utf-8")
     result = run_suite("scenarios", SUITE, Options(data=folder), keep=keep)
     assert [row["time"] for row in result["rows"]] == [0.5, 1.0]
+
+
+def test_a_file_that_is_not_there_is_a_failed_row_and_the_others_are_driven(tmp_path):
+    folder = folder_of(tmp_path, "one.toml")
+    (folder / "gone.toml").symlink_to(tmp_path / "nowhere.toml")
+    result = run_suite("scenarios", SUITE, Options(data=folder))
+    assert [row["outcome"] for row in result["rows"]] == ["error", "timeout"]
+    assert "gone.toml" in result["rows"][0]["reason"]
+    assert result["preset"] == "paper"

@@ -17,8 +17,8 @@ import numpy as np
 from dynastar.bench import driven
 from dynastar.bench.missions import Mission, Options
 from dynastar.errors import DataError
-from dynastar.io.paths import local_path
 from dynastar.io.scenario_file import load_scenario
+from dynastar.paths import local_path
 from dynastar.simulation import Mover, Noise, Scenario
 
 DEFAULT_MISSIONS = 10

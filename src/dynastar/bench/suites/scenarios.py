@@ -13,8 +13,8 @@ from typing import Any
 from dynastar.bench import driven
 from dynastar.bench.missions import Mission, Options
 from dynastar.errors import DataError
-from dynastar.io.paths import local_path
 from dynastar.io.scenario_file import load_scenario
+from dynastar.paths import local_path
 from dynastar.simulation import Scenario
 
 DEFAULT_MISSIONS = None
@@ -42,9 +42,12 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
 
 
 def source_of(mission: Mission) -> str:
-    """Name and digest of a mission's file."""
+    """Name and digest of a mission's file; the name alone where it cannot be read."""
     file, _ = mission.spec
-    return f"{file} {hashlib.sha256(file.read_bytes()).hexdigest()}"
+    try:
+        return f"{file} {hashlib.sha256(file.read_bytes()).hexdigest()}"
+    except OSError:
+        return str(file)
 
 
 def run_mission(mission: Mission, options: Options, repeat: int) -> dict[str, Any]:

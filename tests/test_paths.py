@@ -18,7 +18,7 @@ from dynastar.io import (
     save_ros_map,
 )
 from dynastar.io.movingai import load_movingai_map
-from dynastar.io.paths import local_path
+from dynastar.paths import local_path
 from episodes import episode
 
 GRID = OccupancyGrid.from_text("....\n.##.\n....")
