@@ -42,14 +42,14 @@ def as_point(value: Any, what: str) -> tuple[float, float]:
     return numbers[0], numbers[1]
 
 
-def place(x: float, y: float) -> str:
-    """A position (m) as messages show it: to a micrometre, far from the origin too."""
-    return f"({length(x)}, {length(y)})"
+def place(x: float, y: float, decimals: int = 3) -> str:
+    """A position (m) as messages show it; all digits are kept far from the origin, too."""
+    return f"({length(x, decimals)}, {length(y, decimals)})"
 
 
-def length(metres: float) -> str:
-    """Metres as messages show them: to a micrometre."""
-    return f"{round(metres, 6) + 0.0:.12g}"
+def length(metres: float, decimals: int = 6) -> str:
+    """Metres as messages show them."""
+    return f"{round(metres, decimals) + 0.0:.12g}"
 
 
 def as_goal(value: Any) -> Goal:

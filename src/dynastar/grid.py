@@ -221,7 +221,7 @@ class OccupancyGrid:
         """(row, column) of the cell that holds a world point; OutOfMap if none does."""
         row, column = self.frame.to_grid(x, y)
         if not (0 <= row < self.rows and 0 <= column < self.columns):
-            raise OutOfMap(f"{place(x, y)} is off the map, which spans {self.extent()}")
+            raise OutOfMap(f"{place(x, y, 6)} is off the map, which spans {self.extent()}")
         return int(row), int(column)
 
     def cell_to_world(self, row: int, column: int) -> tuple[float, float]:

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.config import Field, nearest, self_checking, summary
-from dynastar.errors import UnknownRobot
+from dynastar.errors import ConfigError, UnknownRobot
 from dynastar.footprint import Footprint, box
 from dynastar.geometry import Pose2D, Twist, wrap_angle
 
@@ -72,13 +72,25 @@ class Lidar(NamedTuple):
 class Robot:
     """A differential-drive robot: its limits, its footprint and the lidar it carries.
 
-    ``Robot.simple`` is enough to begin with.
+    ``Robot.simple`` is enough to begin with. Raises ConfigError for a robot that could not drive or see.
     """
 
     name: str
     limits: Limits
     footprint: Footprint
     lidar: Lidar = Lidar()
+
+    def __post_init__(self) -> None:
+        limits, lidar = self.limits, self.lidar
+        for name, least, unit, most_name, most in (
+            ("range_min", lidar.range_min, "m", "range_max", lidar.range_max),
+            ("v_least", limits.v_least, "m/s", "v_max", limits.v_max),
+            ("omega_least", limits.omega_least, "rad/s", "omega_max", limits.omega_max),
+        ):
+            if least >= most:
+                raise ConfigError(
+                    f"{name} is {least:g} {unit}: expected less than {most_name}, {most:g} {unit}"
+                )
 
     def __repr__(self) -> str:
         limits, lidar = self.limits, self.lidar

@@ -187,7 +187,12 @@ def test_any_legal_robot_and_settings_are_checked_in_finite_words(seed):
 
     x, y = random.uniform(0.02, 2.0, 2)
     shape = random.choice([Footprint.disc(x), box(2.0 * x, 2.0 * y)])
-    robot = Robot("any", drawn(Limits), shape, drawn(Lidar, range_min=0.1))
+    limits = drawn(Limits)
+    limits = limits._replace(
+        v_least=min(limits.v_least, 0.5 * limits.v_max),
+        omega_least=min(limits.omega_least, 0.5 * limits.omega_max),
+    )
+    robot = Robot("any", limits, shape, drawn(Lidar, range_min=0.05))
     check = check_robot(robot, drawn(NavigatorConfig), room(1.0), timed=False)
     assert len(check.findings) == 11
     for one in check.findings:

@@ -142,7 +142,7 @@ def test_a_whole_scenario_is_read_key_by_key(tmp_path):
         ("[sensor]\nbeam = 3", r"'sensor.beam' \(did you mean 'beams'\?\)"),
         ("[sensor]\nbeams = 0", "'sensor.beams' is 0"),
         ("[sensor]\nrange_bound = -1", "'sensor.range_bound' is -1"),
-        ("[sensor]\nrange_min = 6", "'sensor.range_min' is 6 m"),
+        ("[sensor]\nrange_min = 6", "range_min is 6 m: expected less than"),
         ("sensor = 3", "'sensor' is 3"),
         ("obstacles = 3", "'obstacles' is 3"),
         ("[[obstacles]]\nbox = [1, 1, 0, 1]", r"'obstacles\[0\].box\[2\]' is 0"),
@@ -186,6 +186,17 @@ def test_what_is_wrong_is_named_after_the_file(tmp_path, change, message):
     with pytest.raises(ScenarioError, match=rf"small\.toml: .*({message})") as caught:
         load(tmp_path, SMALL + change)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["v", "omega"])
+def test_a_robot_that_could_not_move_is_refused(tmp_path, name):
+    text = SMALL.replace(
+        'robot = "paper"', f'robot = {{ base = "paper", limits.{name}_least = 5 }}'
+    )
+    with pytest.raises(
+        ScenarioError, match=rf"{name}_least is 5 .*: expected less than {name}_max"
+    ):
+        load(tmp_path, text)
 
 
 @pytest.mark.parametrize(

@@ -138,7 +138,7 @@ lidars = st.builds(
     y=st.floats(-5.0, 5.0),
     theta=st.floats(-6.0, 6.0),
     nothing=st.lists(st.sampled_from([0.0, 65.5, -1.0, math.nan, math.inf, -math.inf]), max_size=2),
-)
+).filter(lambda lidar: lidar.range_min < lidar.range_max)
 
 
 @pytest.mark.filterwarnings("ignore:a footprint reaches")

@@ -229,11 +229,6 @@ def _sensor(value: Any, robot: Robot) -> tuple[Robot, Noise]:
             raise ConfigError(f"unknown key 'sensor.{key}'{nearest(key, legal)}")
     noise = {key: table.pop(key) for key in Noise._fields if key in table}
     lidar = _overridden(Lidar, robot.lidar, table, "sensor")
-    if lidar.range_min >= lidar.range_max:
-        raise ConfigError(
-            f"'sensor.range_min' is {lidar.range_min:g} m: expected less than "
-            f"range_max, {lidar.range_max:g} m"
-        )
     return Robot(robot.name, robot.limits, robot.footprint, lidar), checked(Noise, noise, "sensor")
 
 

@@ -136,7 +136,7 @@ def _nearest_fit(grid: OccupancyGrid, field: Floats, xy: Point, radius: float) -
     points = grid.frame.points_to_world(np.column_stack([rows, columns]) + 0.5)
     away = np.hypot(*(points - (xy[0], xy[1])).T)
     x, y = points[away.argmin()]
-    return f"the nearest place where it fits is {place(x, y)}, {away.min():.3g} m away"
+    return f"the nearest place where it fits is {place(x, y, 6)}, {away.min():.3g} m away"
 
 
 def _widest(

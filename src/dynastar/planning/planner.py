@@ -253,7 +253,7 @@ class GridPlanner:
         row, column = self.grid.frame.to_grid(*xy)
         if not (0 <= row < self.grid.rows and 0 <= column < self.grid.columns):
             raise OutOfMap(
-                f"the {name} {place(*xy)} is off the map, which spans {self.grid.extent()}"
+                f"the {name} {place(*xy, 6)} is off the map, which spans {self.grid.extent()}"
             )
         return row, column
 
