@@ -105,6 +105,7 @@ bench: $(PEERS)/.installed
 	$(PEERS)/bin/python benchmarks/grids.py --quick $${DYNASTAR_DATA:+--data "$$DYNASTAR_DATA"}
 	$(PEERS)/bin/python benchmarks/grids.py --largest 512
 	$(PEERS)/bin/python benchmarks/replanning.py
+	$(PEERS)/bin/python benchmarks/plan_times.py
 	$(PEERS)/bin/python benchmarks/heuristic.py
 	$(PEERS)/bin/python benchmarks/memory.py
 	$(PEERS)/bin/python benchmarks/memory.py 16384 --maps "random 20%" "rooms 65"

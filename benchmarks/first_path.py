@@ -1,9 +1,9 @@
 """What the first path by Eq. 2 takes and what the exact search adds: ``python benchmarks/first_path.py``.
 
 A navigator drives along the path of the improved A*, and in the next tick along the exact one where that
-is clearly shorter (``replanning.CLEARLY``). Maps of 40 x 40 cells, a quarter of each kind, corner to
-corner, against the optimum over any points; with ``--data DIR`` real maps, too, between random places for a
-disc of 0.25 m, against the exact path (where the optimum would take hours).
+is clearly shorter (``replanning.CLEARLY_SHORTER``). Maps of 40 x 40 cells, a quarter of each kind, corner
+to corner, against the optimum over any points; with ``--data DIR`` real maps, too, between random places
+for a disc of 0.25 m, against the exact path (where the optimum would take hours).
 """
 
 import argparse
@@ -18,7 +18,7 @@ from dynastar.bench.optimum import shortest_over_corners
 from dynastar.errors import PlanningError
 from dynastar.grid import OccupancyGrid
 from dynastar.io import load_map
-from dynastar.navigator.replanning import CLEARLY
+from dynastar.navigator.replanning import CLEARLY_SHORTER
 from dynastar.path import Path as Line
 from dynastar.planning import GridPlanner
 
@@ -43,7 +43,7 @@ def ask(planner: GridPlanner, start, goal, optimum: float) -> Asked:
         for _ in range(ROUNDS)
     ]
     first, exact = rounds[0][0].path.length, rounds[0][1].path.length
-    final = exact if exact < CLEARLY * first else first
+    final = exact if exact < CLEARLY_SHORTER * first else first
     return Asked(
         min(by_eq_2.time_ms for by_eq_2, _ in rounds),
         min(exactly.time_ms for _, exactly in rounds),
