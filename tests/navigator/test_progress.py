@@ -34,6 +34,17 @@ def test_without_progress_for_the_patience_the_robot_is_stuck(drift):
     assert progress.rounds == 1
 
 
+def test_time_without_a_path_is_time_without_progress():
+    progress = Progress(3.0)
+    assert [k for k in range(9) if progress.stuck(float(k), (0.0, 0.0), None)] == [4, 8]
+    shut = Progress(3.0)  # every other second, and the robot stands
+    costs = [towards(50.0) if k % 2 else None for k in range(5)]
+    assert [k for k in range(5) if shut.stuck(float(k), (0.0, 0.0), costs[k])] == [4]
+    open_again = Progress(3.0)
+    for k, cost in enumerate([None] * 3 + [towards(50.0)] * 9):
+        assert not open_again.stuck(float(k), (max(0.0, k - 3.0), 0.0), cost)
+
+
 @pytest.mark.parametrize("offset", [lambda k: 3.0 * (k % 2), lambda k: 0.5 * k, lambda k: -0.5 * k])
 def test_a_cost_to_go_that_changes_everywhere_says_nothing(offset):
     assert times_stuck(Progress(3.0), [2.0 * STEP * k for k in range(40)], offset=offset) == []
@@ -89,3 +100,15 @@ def test_where_another_path_leads_back_progress_is_measured_from_the_robot():
     for second in range(3, 20):
         x = 2.0 - 0.11 * (second - 2)
         assert not progress.stuck(float(second), (x, 0.0), lambda x, y: 10.0 + x)
+
+
+def test_rounds_without_a_path_count_until_the_next_goal():
+    progress = Progress(3.0)
+    for k in range(9):
+        progress.stuck(float(k), (0.0, 0.0), None)
+    assert (progress.rounds, progress.pathless_rounds) == (2, 2)
+    for k in range(9, 9 + round(3.0 * LEAP)):
+        progress.stuck(float(k), (k - 9.0, 0.0), towards(50.0))
+    assert (progress.rounds, progress.pathless_rounds) == (0, 2)
+    progress.reset()
+    assert progress.pathless_rounds == 0

@@ -330,3 +330,32 @@ def test_who_stands_so_near_that_the_start_is_occupied_is_waited_for(seen):
     planner = navigator.planners
     with pytest.raises(NoPath if seen else StartOccupied, match="has no room"):
         planner.plan((4.0, 3.0), (7.5, 5.5))
+
+
+def test_a_robot_comes_to_rest_before_it_plans_anew(monkeypatch):
+    """With finer cells that may take seconds, in which a driver goes on with the last command."""
+    drive = under_way(latency=0.1)
+    at, drop = [], drive.navigator.route.drop
+
+    def noted():
+        at.append(drive.twist)
+        drop()
+
+    monkeypatch.setattr(drive.navigator.route, "drop", noted)
+    monkeypatch.setattr(drive.navigator.progress, "patience", -1.0)
+    drive.tick()
+    monkeypatch.setattr(drive.navigator.progress, "patience", 6.0)
+    said = [drive.tick() and drive.status.state for _ in range(30)]
+    assert at == [(0.0, 0.0)]
+    assert drive.status.recoveries == 1
+    assert said[0] == "recovering"
+    drive.until("arrived")
+
+
+def test_cells_are_halved_where_nothing_leads_on_unless_the_map_is_large(monkeypatch):
+    drive = under_way()
+    for most, resolution in ((4 * 120 * 160 - 1, 0.05), (4 * 120 * 160, 0.025)):
+        monkeypatch.setattr("dynastar.navigator.navigator.MOST_CELLS", most)
+        drive.navigator._refine()
+        assert drive.navigator.planning_map.grid.resolution == pytest.approx(resolution)
+    drive.until("arrived")

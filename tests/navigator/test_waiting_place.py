@@ -5,7 +5,7 @@ import math
 import pytest
 
 from driving import ROUND, Drive, room
-from dynastar.errors import GoalObstructed
+from dynastar.errors import GoalObstructed, NoPath
 from dynastar.geometry import Goal
 from dynastar.navigator.waiting_place import WAIT_WITHIN
 from dynastar.perception import MovingObstacle
@@ -28,7 +28,7 @@ def test_an_occupied_goal_is_waited_for_near_by_and_reached_once_it_is_free(box)
     drive.for_seconds(30.0)
     assert (drive.status.state, drive.status.reason) == ("waiting", OCCUPIED)
     assert math.dist(drive.pose[:2], GOAL) < WAIT_WITHIN
-    assert drive.status.recoveries == 0
+    assert drive.status.recoveries <= 2
     before = drive.pose
     drive.for_seconds(20.0)
     assert math.dist(drive.pose[:2], before[:2]) < 0.1  # it stays there
@@ -42,19 +42,21 @@ def test_an_obstacle_at_the_goal_that_never_moves_ends_the_mission_in_time():
     drive.until("waiting")
     began = drive.now
     drive.until("blocked", seconds=120.0)
-    assert drive.now - began == pytest.approx(4 * 6.0, abs=3.0)
+    assert drive.now - began == pytest.approx(4 * 6.0, abs=6.0)
+    assert drive.status.recoveries == 4
     assert OCCUPIED in drive.status.reason
 
 
-def test_an_obstacle_at_the_goal_that_comes_and_goes_ends_the_mission_in_time(monkeypatch):
-    """Noise may open and shut a goal: every two seconds a plan succeeds, but the robot gets nowhere."""
-    drive = drive_to(GOAL)
+@pytest.mark.parametrize("error", [GoalObstructed(OCCUPIED), NoPath("no way leads there")])
+def test_a_way_that_comes_and_goes_ends_the_mission_in_time(monkeypatch, error):
+    """Noise may open and shut a way: every two seconds a plan succeeds, but the robot gets nowhere."""
+    drive = drive_to(GOAL, (3.0, 5.0, 3.3, 5.3))
     drive.tick()
     plan = drive.navigator.planners.plan
 
     def at_times(*arguments):
         if int(drive.now / 2.0) % 2:
-            raise GoalObstructed(OCCUPIED)
+            raise error
         return plan(*arguments)
 
     monkeypatch.setattr(drive.navigator.planners, "plan", at_times)
@@ -64,8 +66,8 @@ def test_an_obstacle_at_the_goal_that_comes_and_goes_ends_the_mission_in_time(mo
         drive.navigator.command(drive.state, drive.scan())  # it does not move
         drive.now += 0.1
         assert drive.now < 100.0
-    assert OCCUPIED in drive.status.reason
-    assert drive.now > 40.0
+    assert 24.0 < drive.now < 40.0
+    assert drive.status.recoveries == 4
 
 
 def test_a_person_at_the_goal_is_waited_for_without_limit():

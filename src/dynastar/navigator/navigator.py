@@ -25,9 +25,10 @@ from dynastar.navigator.status import RobotState, Status
 from dynastar.path import Path
 from dynastar.perception import MovingObstacle, PlanningMap
 from dynastar.planning import Planner
-from dynastar.robot import Robot
+from dynastar.robot import Robot, stopping_time
 from dynastar.scan import LaserScan
 
+MOST_CELLS = 10_000_000  # of a planning map whose cells are halved: it takes 2 s to plan on anew
 FINE = 8  # cells to half the robot's width, from which on cells are not halved
 
 
@@ -138,9 +139,10 @@ class Navigator:
 
     def _refine(self) -> None:
         """Use cells half as wide, if these are wide for the robot: sensed cells close narrow ways."""
-        resolution = self.planning_map.grid.resolution
-        if resolution > self.robot.footprint.half_width / FINE:
-            self._use(self._grid, self.config._replace(resolution=0.5 * resolution))
+        grid = self.planning_map.grid
+        wide = grid.resolution > self.robot.footprint.half_width / FINE
+        if wide and 4 * grid.values.size <= MOST_CELLS:
+            self._use(self._grid, self.config._replace(resolution=0.5 * grid.resolution))
 
     def forget(self) -> None:
         """Drop all that was sensed, but for the tracks."""
@@ -246,9 +248,6 @@ class Navigator:
         if event.is_new:
             self.mission.error = None
             self.progress.measure_anew()
-        if event.recovery:
-            self.mission.recover(state.stamp, event.recovery)
-            self._refine()
         if event.blocked:
             self.mission.block(event.blocked, event.error)
 
@@ -259,6 +258,9 @@ class Navigator:
         movers: Sequence[MovingObstacle] | None,
     ) -> Twist | None:
         """The command, by the dynamic window or to turn to the goal's heading; None to stop."""
+        if self.progress.stops_until is not None:
+            self._recover(state, self.progress.stops_until)
+            return None
         pose, measured = acting
         twist = self._commands.carried_on(measured)
         stops = self._commands.stops_from(state, acting, twist)
@@ -280,24 +282,42 @@ class Navigator:
                 return None
         choice = self._choice = driving.choose(pose, twist, scene, stops)
         self._judge(state, choice, len(view.moving.obstacles) > 0)
-        return choice.command if self.mission.under_way else None
+        goes_on = self.mission.under_way and self.progress.stops_until is None
+        return choice.command if goes_on else None
 
     def _judge(self, state: RobotState, choice: Choice, moving: bool) -> None:
-        """Say what is going on, and start anew where there has been no progress for long."""
-        mission, path = self.mission, self.route.path
-        mission.say_driving(choice, moving, "" if path is not None else self.route.waits_because)
-        if path is None:
-            self.progress.restart(state.stamp)
-            return
-        assert self.driving.guide is not None
+        """Say what is going on, and stop to plan anew where there has been no progress for long."""
+        mission, route = self.mission, self.route
+        mission.say_driving(choice, moving, route.waits_because)
         here = (state.pose.x, state.pose.y)
-        if self.route.waits_for_someone(here):
+        if route.waits_for_someone(here):
             mission.say("waiting", "a moving obstacle is at the goal")
             self.progress.restart(state.stamp)
-        if not self.progress.stuck(state.stamp, here, self.driving.guide.cost_at):
             return
-        if self.progress.rounds > self.config.attempts:
-            mission.block(f"gave up: no progress after {self.config.attempts} recoveries")
+        attempts = self.config.attempts
+        if route.path is None and self.progress.pathless_rounds >= attempts:
+            mission.block(f"no way is left: {route.error}", route.error)
             return
-        self.route.drop()
-        mission.recover(state.stamp, "no progress: forget what was sensed and plan anew")
+        assert self.driving.guide is not None
+        cost_at = None if route.path is None else self.driving.guide.cost_at
+        if not self.progress.stuck(state.stamp, here, cost_at):
+            return
+        if self.progress.rounds > attempts:
+            mission.block(f"gave up: no progress after {attempts} recoveries")
+            return
+        self.progress.stops_until = (
+            state.stamp + self.config.latency + stopping_time(state.twist, self.robot.limits)
+        )
+
+    def _recover(self, state: RobotState, stops_until: float) -> None:
+        """Plan anew once the robot has come to rest: with finer cells of a large map that takes seconds."""
+        self.mission.say("recovering", "no progress")
+        if state.stamp < stops_until:
+            return
+        route, has_path = self.route, self.route.path is not None
+        if not route.is_at_obstructed_goal:  # there it sees what is in the way
+            route.drop()
+        if not has_path:
+            self._refine()
+        self.progress.restart(state.stamp)
+        self.mission.recover(state.stamp, "no progress: plan anew")

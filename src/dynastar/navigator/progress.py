@@ -23,12 +23,13 @@ class Progress:
 
     def reset(self) -> None:
         """A new goal: nothing has been reached yet."""
-        self.rounds = 0
+        self.rounds = self.pathless_rounds = 0
         self._stuck_at: Point | None = None
         self.restart(-math.inf)
 
     def restart(self, now: float) -> None:
         """Measure from ``now`` on (s), wherever the robot is."""
+        self.stops_until: float | None = None  # s, to plan anew then
         self._anchor: Point | None = None
         self._since, self._is_new_path = now, False
 
@@ -39,8 +40,26 @@ class Progress:
         """
         self._is_new_path = True
 
-    def stuck(self, now: float, here: Point, cost_to_go: CostToGoAt) -> bool:
-        """Whether the robot, ``here`` (m) at ``now`` (s), made no progress for longer than its patience."""
+    def stuck(self, now: float, here: Point, cost_to_go: CostToGoAt | None) -> bool:
+        """Whether the robot, ``here`` (m) at ``now`` (s), made no progress for longer than its patience.
+
+        Without a path there is no ``cost_to_go``, and no progress. ``pathless_rounds`` count until the next
+        goal: a robot that goes from one closed way to another and back makes no progress.
+        """
+        if cost_to_go is not None:
+            self._compare(now, here, cost_to_go)
+        elif self._since == -math.inf:
+            self._since = now
+        if now - self._since <= self.patience:
+            return False
+        self.rounds += 1
+        self.pathless_rounds += cost_to_go is None
+        self._stuck_at = self._stuck_at or here
+        self.restart(now)
+        return True
+
+    def _compare(self, now: float, here: Point, cost_to_go: CostToGoAt) -> None:
+        """Take note of progress since the robot was at the place it is measured from."""
         value = cost_to_go(*here)
         if self._stuck_at is not None and cost_to_go(*self._stuck_at) - value > LEAP:
             self._stuck_at, self.rounds = None, 0
@@ -51,9 +70,3 @@ class Progress:
             if self._anchor is not None or self._since == -math.inf:
                 self._since = now
             self._anchor = here
-        if now - self._since <= self.patience:
-            return False
-        self.rounds += 1
-        self._stuck_at = self._stuck_at or here
-        self.restart(now)
-        return True

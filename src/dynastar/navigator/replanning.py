@@ -28,12 +28,11 @@ CLEARLY_SHORTER = 0.99  # of the length of a path by Eq. 2, up to which an exact
 class RouteEvent(NamedTuple):
     """What happened to the route in a tick.
 
-    ``is_new`` tells of another path, ``recovery`` of a recovery and its detail. ``blocked`` is the reason
-    why no path is left, and ``error`` that of the planner.
+    ``is_new`` tells of another path. ``blocked`` is the reason why there can be none, and ``error`` that of
+    the planner.
     """
 
     is_new: bool = False
-    recovery: str = ""
     blocked: str = ""
     error: PlanningError | None = None
 
@@ -42,7 +41,7 @@ KEPT, REPLACED = RouteEvent(), RouteEvent(is_new=True)
 
 
 class Route:
-    """The path that is driven, or None while there is none, and how far along it the robot is (m).
+    """The path that is driven, or None and the ``error`` that tells why; how far along it the robot is (m).
 
     The path and the robot's state are in the navigator's own frame; goals, given paths and plans are
     in the map frame.
@@ -52,32 +51,29 @@ class Route:
         self.planners, self.config = planners, config
         self.plan: Plan | None = None
         self.plan_id, self.reason, self.replans = 0, "", 0
-        self.waits_because = NO_PATH
         self._stand = Path(np.zeros((1, 2)))  # where the robot waits while there is no path
         self._is_short = False  # the path does not lead to the goal, only nearer or out of a zone
         self._someone = False  # a moving obstacle is at the goal
-        self._planned_at = self._obstructed_at = -math.inf
+        self._planned_at = -math.inf
         self._changed = False  # the planning map, since the path was last looked at
         self.start_over()
 
     def start_over(self, given: Path | None = None) -> None:
         """Another goal, or a path that is ``given`` and only followed."""
         self.path: Path | None = None
+        self.error: PlanningError | None = None
         self.s, self.given = 0.0, given
         self._planned = False  # for this goal
         self._unsure = False  # an exact search may find a shorter path
-        self._no_path_since: float | None = None
-        self._forgotten = 0
-        self._waited = 0.0  # s, for an obstacle at the goal
 
     def set_map(self, planners: Planners) -> None:
         """Another map: the next tick plans anew."""
-        self.planners, self.path, self._no_path_since = planners, None, None
+        self.planners, self.path, self.error = planners, None, None
 
     def forget_times(self) -> None:
         """Another clock: the next tick plans anew."""
-        self.path, self._no_path_since = None, None
-        self._planned_at = self._obstructed_at = -math.inf
+        self.path, self.error = None, None
+        self._planned_at = -math.inf
 
     @property
     def _yaw(self) -> float:
@@ -86,7 +82,7 @@ class Route:
     def drop(self) -> None:
         """Forget the path and what was sensed, so that the next tick plans anew."""
         self.planners.forget()
-        self.path = None
+        self.path, self.error = None, None
 
     def ends_within(self, distance: float) -> bool:
         """True if less than ``distance`` m of a given path are left. Always True for planned paths."""
@@ -112,15 +108,13 @@ class Route:
         out of the local map, ``someone`` whether a moving obstacle is at the goal.
         """
         self._someone = someone
-        if someone:
-            self._waited = 0.0
         self._changed = self._changed or changed
         since = state.stamp - self._planned_at
         if self.path is None:
             if self.given is not None:
                 self._join(self.given, state.pose)
                 return REPLACED
-            waits = self._no_path_since is not None and since < REPLAN_PERIOD
+            waits = self.error is not None and since < REPLAN_PERIOD
             return KEPT if waits else self._replan(state, goal, "a plan is needed")
         here = (state.pose.x, state.pose.y)
         self.s = self.path.project(*here, low=self.s - 0.5, high=self.s + 2.0)
@@ -139,11 +133,23 @@ class Route:
             return self._replan(state, goal, "a shorter path", BETTER)
         return KEPT
 
+    @property
+    def is_at_obstructed_goal(self) -> bool:
+        """Whether the robot waits as near to the goal as it can come."""
+        return isinstance(self.error, GoalObstructed)
+
+    @property
+    def waits_because(self) -> str:
+        """Why there is no path; empty while there is one."""
+        if self.path is not None:
+            return ""
+        return str(self.error) if self.is_at_obstructed_goal else NO_PATH
+
     def waits_for_someone(self, here: tuple[float, float]) -> bool:
         """Whether a moving obstacle is at the goal, and the robot near the end of the path to it."""
-        if not self._someone or self.path is None:
-            return False
-        return math.dist(here, self.path.points[-1]) < WAIT_WITHIN
+        if self.path is None:
+            return self._someone and self.is_at_obstructed_goal
+        return self._someone and math.dist(here, self.path.points[-1]) < WAIT_WITHIN
 
     def _is_blocked(self) -> bool:
         """Whether the rest of the path is blocked on the planning map."""
@@ -174,7 +180,6 @@ class Route:
             if is_review:
                 return KEPT
             return self._without_path(state, error)
-        self._no_path_since = None
         if reason == GOAL_IS_FREE and self._part_to_drive(plan, goal)[1]:
             return KEPT
         if self.path is not None and plan.path.length > below * (self.path.length - self.s):
@@ -203,7 +208,7 @@ class Route:
 
     def _take(self, plan: Plan, goal: Goal, reason: str) -> None:
         path, self._is_short = self._part_to_drive(plan, goal)
-        self.path, self.s = turned_path(path, -self._yaw), 0.0
+        self.path, self.s, self.error = turned_path(path, -self._yaw), 0.0, None
         self.plan = self.planners.with_explored(plan)
         self.plan_id, self.reason = self.plan_id + 1, reason
 
@@ -219,30 +224,11 @@ class Route:
         return path, math.dist(path.points[-1], goal[:2]) > self.config.goal_tolerance
 
     def _without_path(self, state: RobotState, error: PlanningError) -> RouteEvent:
-        """No path on the planning map: what was sensed may be gone, so forget it and plan again.
-
-        The route is blocked where nothing was sensed, and after ``attempts`` to forget it. Near an
-        obstructed goal the robot waits as long in all, and without limit for a moving obstacle, and
-        forgets nothing, for it sees the obstacle.
-        """
-        is_near = isinstance(error, GoalObstructed)
-        if is_near:
-            self._waited += min(state.stamp - self._obstructed_at, REPLAN_PERIOD)
-            self._obstructed_at = state.stamp
-            if self._waited > self.config.attempts * self.config.stuck_time:
-                return RouteEvent(blocked=str(error), error=error)
+        """No path on the planning map: wait where the robot is, if what was sensed is in the way."""
         sensed = isinstance(error, NoPath) and bool(self.planners.planning_map.seen.any())
-        if not (is_near or sensed):
+        if not (sensed or isinstance(error, GoalObstructed)):
             return RouteEvent(blocked=str(error), error=error)
-        if sensed and self._forgotten >= self.config.attempts:
-            return RouteEvent(blocked=f"no way is left: {error}", error=error)
-        self.path, self.waits_because = None, str(error) if is_near else NO_PATH
-        if self._no_path_since is None:
-            self._no_path_since = state.stamp
+        if self.path is not None or self.error is None:
             self._stand = Path(np.array([state.pose[:2]]))
-        elif sensed and state.stamp - self._no_path_since > self.config.stuck_time:
-            self._forgotten += 1
-            self._no_path_since = None
-            self.planners.forget()
-            return RouteEvent(recovery="forget what was sensed: no way is left")
+        self.path, self.error = None, error
         return KEPT
