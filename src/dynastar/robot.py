@@ -82,14 +82,17 @@ class Robot:
 
     def __post_init__(self) -> None:
         limits, lidar = self.limits, self.lidar
-        for name, least, unit, most_name, most in (
-            ("range_min", lidar.range_min, "m", "range_max", lidar.range_max),
-            ("v_least", limits.v_least, "m/s", "v_max", limits.v_max),
-            ("omega_least", limits.omega_least, "rad/s", "omega_max", limits.omega_max),
+        if lidar.range_min >= lidar.range_max:
+            raise ConfigError(
+                f"range_min is {lidar.range_min:g} m: expected less than range_max, {lidar.range_max:g} m"
+            )
+        for name, least, most, unit in (
+            ("v", limits.v_least, limits.v_max, "m/s"),
+            ("omega", limits.omega_least, limits.omega_max, "rad/s"),
         ):
-            if least >= most:
+            if least > most:
                 raise ConfigError(
-                    f"{name} is {least:g} {unit}: expected less than {most_name}, {most:g} {unit}"
+                    f"{name}_least is {least:g} {unit}: expected at most {name}_max, {most:g} {unit}"
                 )
 
     def __repr__(self) -> str:

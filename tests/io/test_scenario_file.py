@@ -193,9 +193,7 @@ def test_a_robot_that_could_not_move_is_refused(tmp_path, name):
     text = SMALL.replace(
         'robot = "paper"', f'robot = {{ base = "paper", limits.{name}_least = 5 }}'
     )
-    with pytest.raises(
-        ScenarioError, match=rf"{name}_least is 5 .*: expected less than {name}_max"
-    ):
+    with pytest.raises(ScenarioError, match=rf"{name}_least is 5 .*: expected at most {name}_max"):
         load(tmp_path, text)
 
 

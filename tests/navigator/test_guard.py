@@ -344,7 +344,7 @@ def test_a_wrong_part_is_told():
 
 @pytest.mark.parametrize(("v", "omega"), [(0.2, 0.0), (-0.1, 0.0), (0.0, 0.9), (0.2, 0.9)])
 def test_a_drive_that_needs_more_than_is_asked_for_stands(v, omega):
-    limits = LIMITS._replace(v_max=0.3, v_min=-0.2, v_least=0.3, omega_max=1.0, omega_least=1.5)
+    limits = LIMITS._replace(v_max=0.3, v_min=-0.2, v_least=0.3, omega_max=1.5, omega_least=1.5)
     drive = GuardedDrive(robot=replace(ROUND, limits=limits))
     for given in drive.drive(Twist(v, omega), 1.0):
         assert given.command == (0.0, 0.0)
