@@ -21,6 +21,7 @@ from dynastar import io
 from dynastar.bench.keeping import mission_numbered, replay
 from dynastar.bench.missions import Options
 from dynastar.bench.suites import load_suite
+from dynastar.bench.suites.common import touched_mover
 from dynastar.bench.workers import completed
 from dynastar.episode import Episode
 from dynastar.geometry import Pose2D, compose
@@ -53,6 +54,7 @@ CAUSES = {
     "turned": "turned, stopped, started or changed pace within the stopping time",
     "slowed": "walked on steadily into a robot that was slowing down or reversing",
     "drove on": "walked on steadily, and the robot drove on",
+    "at rest": "was no person: something at rest",
 }
 
 
@@ -85,9 +87,9 @@ def examined(episode: Episode, scenario: Scenario) -> dict[str, Any]:
     """The cause of the contact at an episode's end, with the figures that it is read off."""
     times, speeds = episode.trajectory.times, episode.trajectory.twists[:, 0]
     end, limits = times[-1], scenario.robot.limits
-    robot = episode.trajectory.poses[-1, :2]
-    gaps = np.hypot(*(episode.movers[-1] - robot).T) - episode.mover_radii
-    person = int(np.nanargmin(gaps))
+    person = touched_mover(episode)
+    if person is None:
+        return {"cause": "at rest", "speed": float(speeds[-1])}
     fastest = float(np.abs(speeds[times >= end - BEFORE]).max())
     period = float(np.median(np.diff(times)))
     stopping = period + scenario.latency + fastest / limits.v_brake

@@ -3,7 +3,8 @@
 Four questions, each a table and a panel, log-log with the slope of every line (1: in proportion), the
 last one linear: a search of a prepared grid over the side of its map, the dynamic window over its
 samples, sensing (scan to distance field, tracker included) over the beams, and sensing and window over
-the movers, which walk about the robot and are tracked. Warm, one thread, the best of some times.
+the movers, which walk about the robot and are tracked. Warm, one thread; median and 99th percentile: of
+searches over five queries and some repeats, of the others over the ticks.
 """
 
 import argparse
@@ -34,27 +35,33 @@ from dynastar.planning import SearchGrid
 from dynastar.simulation.lidar import LidarSimulator
 from dynastar.simulation.warming import warm_up
 
-Series = dict[str, list[tuple[float, float]]]  # by line: (x, ms)
+Times = list[float]  # ms
+Series = dict[str, list[tuple[float, float, float]]]  # by line: x, median and 99th percentile (ms)
 SIDES = 128, 256, 512, 1024, 2048, 4096
 SAMPLES = 100, 200, 400, 800, 1600, 3200, 6400
 BEAMS = 90, 180, 360, 720, 1440, 2880
 MOVERS = 0, 1, 2, 4, 8, 16
 HALL, CENTRE, PERIOD, RING = 12.0, Pose2D(6.0, 6.0), 0.1, 3.0  # m, s
-TICKS = 150
+TICKS, REPEATS = 150, 5
 
 
-def least(run: Callable[[], object], repeats: int = 5) -> float:
-    """Milliseconds, the best of some times."""
-    best = math.inf
+def timed(run: Callable[[], object], repeats: int) -> Times:
+    """Milliseconds of some runs after a first one."""
+    took = []
     for _ in range(repeats + 1):
         began = time.perf_counter()
         run()
-        best = min(best, 1e3 * (time.perf_counter() - began))
-    return best
+        took.append(1e3 * (time.perf_counter() - began))
+    return took[1:]
+
+
+def point(x: float, took: Times) -> tuple[float, float, float]:
+    """A point of a line."""
+    return x, float(np.median(took)), float(np.percentile(took, 99.0))
 
 
 def searches() -> Series:
-    """Mean over five queries, by algorithm and kind of map, over the side in cells."""
+    """Over five queries, by algorithm and kind of map, over the side in cells."""
     series: Series = {}
     for n in SIDES:
         for kind, occupied in (("random", random_cells(n, 0.2, 0)), ("rooms", rooms(n, 33, 0))):
@@ -67,9 +74,8 @@ def searches() -> Series:
                     grid.forget()  # every search finds its way from nothing
                     grid.search(*query, by)
 
-                times = [least(lambda q=q, ask=ask: ask(q), 3) for q in asked]
-                line = series.setdefault(f"{algorithm}, {kind}", [])
-                line.append((n, float(np.mean(times))))
+                took = [ms for q in asked for ms in timed(lambda q=q, ask=ask: ask(q), REPEATS)]
+                series.setdefault(f"{algorithm}, {kind}", []).append(point(n, took))
     return series
 
 
@@ -102,8 +108,8 @@ class Bench:
         self.navigator.command(RobotState(self.now, CENTRE, Twist(0.3, 0.0)), scan)
         return self.took["update"], self.took["choose"]
 
-    def settled(self) -> tuple[float, float]:
-        """Milliseconds of sensing and of the choice, the best, once every mover is tracked."""
+    def settled(self) -> tuple[Times, Times]:
+        """Milliseconds of sensing and of the choice in many ticks, once every mover is tracked."""
         for _ in range(20):
             self.tick()
         took = []
@@ -111,8 +117,8 @@ class Bench:
             took.append(self.tick())
             tracks = len(self.navigator.status.tracks)
             assert tracks == self.movers, (tracks, self.movers)
-        sensed, chosen = np.array(took).min(axis=0).tolist()
-        return sensed, chosen
+        sensed, chosen = zip(*took, strict=True)
+        return list(sensed), list(chosen)
 
     def _time(self, part: object, name: str) -> None:
         """Puts a clock at the door of a method of the navigator's."""
@@ -135,27 +141,30 @@ def window() -> Series:
         _, chosen = bench.settled()
         choice = bench.navigator.status.choice
         assert choice is not None
-        line.append((len(choice.samples), chosen))
+        line.append(point(len(choice.samples), chosen))
     return {"window": line}
 
 
 def sensing() -> Series:
     """Sensing over the number of beams."""
-    return {"sensing": [(beams, Bench(beams=beams).settled()[0]) for beams in BEAMS]}
+    return {"sensing": [point(beams, Bench(beams=beams).settled()[0]) for beams in BEAMS]}
 
 
 def company() -> Series:
     """Sensing and the choice over the number of movers tracked."""
     took = [(movers, *Bench(movers=movers).settled()) for movers in MOVERS]
     return {
-        "sensing": [(movers, sensed) for movers, sensed, _ in took],
-        "window, 400 samples": [(movers, chosen) for movers, _, chosen in took],
+        "sensing": [point(movers, sensed) for movers, sensed, _ in took],
+        "window, 400 samples": [point(movers, chosen) for movers, _, chosen in took],
     }
 
 
-def growth(line: list[tuple[float, float]]) -> str:
-    """The slope of a log-log plot, by least squares; where x starts at 0, what one more of it takes."""
-    x, y = np.array(line).T
+def growth(line: list[tuple[float, float, float]], of: int = 1) -> str:
+    """The slope of a log-log plot, by least squares; where x starts at 0, what one more of it takes.
+
+    ``of`` is 1 for the medians, 2 for the 99th percentiles.
+    """
+    x, y = np.array(line)[:, [0, of]].T
     if x[0] == 0:
         return f"{1e3 * float(np.polyfit(x, y, 1)[0]):+.0f} us each"
     return f"slope {float(np.polyfit(np.log(x), np.log(y), 1)[0]):.2f}"
@@ -177,15 +186,17 @@ def draw(panels: list[tuple[str, str, Series]], out: Path) -> None:
                 kind |= {"linewidth": 3.5, "markersize": 9}
             if "rooms" in name:
                 kind |= {"linestyle": "--", "markerfacecolor": "white"}
-            axis.plot(*zip(*line, strict=True), marker="o", label=f"{name}: {growth(line)}", **kind)
-        ticks = [x for x, _ in next(iter(series.values()))]
+            x, median, p99 = zip(*line, strict=True)
+            drawn = axis.plot(x, median, marker="o", label=f"{name}: {growth(line)}", **kind)
+            axis.plot(x, p99, ":", color=drawn[0].get_color(), linewidth=1.0)
+        ticks = [x for x, *_ in next(iter(series.values()))]
         few = len(series) < 3
         if 0 not in ticks:
             axis.set(xscale="log", yscale="log")
             axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,)))
             axis.yaxis.set_major_formatter("{x:g}")
         if few:
-            most = max(ms for line in series.values() for _, ms in line)
+            most = max(p99 for line in series.values() for *_, p99 in line)
             axis.set_ylim(0.0 if 0 in ticks else 0.1, 1.2 * most)
         axis.set_xticks(ticks, [f"{x:g}" for x in ticks])
         axis.minorticks_off()
@@ -209,10 +220,12 @@ def main() -> None:
         ("With moving obstacles, 720 beams", "obstacles tracked", company()),
     ]
     for title, unit, series in panels:
-        ticks = [x for x, _ in next(iter(series.values()))]
-        print(f"\n{title + ', ms':40}" + "".join(f"{x:>9g}" for x in ticks) + f"   over {unit}")
+        ticks = [x for x, *_ in next(iter(series.values()))]
+        print(f"\n{title + ', ms':46}" + "".join(f"{x:>9g}" for x in ticks) + f"   over {unit}")
         for name, line in series.items():
-            print(f"{name:40}" + "".join(f"{ms:9.3f}" for _, ms in line) + f"   {growth(line)}")
+            for of, what in ((1, "median"), (2, "p99")):
+                cells = "".join(f"{values[of]:9.3f}" for values in line)
+                print(f"{name + ', ' + what:46}{cells}   {growth(line, of)}")
     draw(panels, out)
 
 

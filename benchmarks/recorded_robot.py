@@ -1,8 +1,11 @@
 """Draws robots, drives and records them by hand, and counts estimates that miss the truth.
 
 python benchmarks/recorded_robot.py [--robots 100] [--seed 1000]
+python benchmarks/recorded_robot.py --physics
 
-For docs/how-to/tune.md. Robot n is drawn from seed + n. Needs the extra bags.
+For docs/how-to/tune.md. Robot n is drawn from seed + n. With --physics MuJoCo moves the robots of the suite
+of that name, and their stops from 80 and 40 % of the full speed are compared with those of the file. Needs
+the extras bags and physics.
 """
 
 import argparse
@@ -10,10 +13,13 @@ import sys
 import tempfile
 from collections import Counter
 from dataclasses import replace
+from functools import partial
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 
+from dynastar.geometry import Pose2D, Twist
 from dynastar.simulation import Noise, Scenario
 from dynastar.simulation.imperfections import Drivetrain, Odometry
 from dynastar.tune.measured import measured
@@ -55,12 +61,47 @@ def drawn(seed: int) -> Scenario:
     )
 
 
+def stops() -> None:
+    """Prints for each robot, floor and load how far it comes in a stop, and how far by its file."""
+    from dynastar.bench.suites.physics import BODIES, FLOORS, GENTLE, LATENCY
+    from dynastar.bench.suites.physics_world import PhysicsWorld
+
+    for (robot, body), floor, loaded in product(BODIES, FLOORS, (False, True)):
+        limits = robot.limits._replace(**GENTLE, v_min=-robot.limits.v_max)
+        scenario = replace(
+            PLAIN, robot=replace(robot, limits=limits), latency=LATENCY, noise=Noise(0.01)
+        )
+        world = partial(PhysicsWorld, body=body, floor=floor, loaded=loaded)
+        script = by_hand(0.8 * limits.v_max, 0.8 * limits.omega_max)
+        with tempfile.TemporaryDirectory() as folder:
+            record(Path(folder) / "bag", scenario, script, make_world=world)
+            found = measured(read_drive(Path(folder) / "bag"), scenario.robot).estimates
+        latency, brake = found["latency"], found["v_brake"]
+        words = [f"{robot.name}, friction {floor:g}, {'with' if loaded else 'without'} payload:"]
+        for part in (0.8, 0.4):
+            driven = world(scenario, Pose2D(6.0, 6.0, 0.0), 0)
+            for _ in range(60):
+                driven.step(Twist(part * limits.v_max, 0.0), 0.05)
+            speed, began = driven.twist.v, driven.pose.x
+            for _ in range(100):
+                driven.step(Twist(0.0, 0.0), 0.05)
+            told = speed * latency.high + 0.5 * speed**2 / brake.low
+            words.append(
+                f"{speed:.2f} m/s {driven.pose.x - began:.3f} m, by the file {told:.3f} m;"
+            )
+        print(*words, f"latency {latency.high:.3f} s, v_brake {brake.low:.2f} m/s2")
+
+
 def main() -> None:
     """Prints every estimate whose range does not hold the truth, and how many there are."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--robots", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1000)
+    parser.add_argument("--physics", action="store_true")
     given = parser.parse_args()
+    if given.physics:
+        stops()
+        return
     counts: Counter[str] = Counter()
     for seed in range(given.seed, given.seed + given.robots):
         scenario = drawn(seed)

@@ -26,7 +26,7 @@ from typing import NamedTuple
 import results_kept
 import results_pages
 from results_kept import is_done, read_record
-from results_parts import Part, parts
+from results_parts import Part, missing, parts
 
 import dynastar
 from dynastar import io
@@ -64,6 +64,12 @@ def check_sources() -> None:
         )
     if git("status", "--porcelain", "--", "src"):
         raise SystemExit("src has changes that are not committed: commit them first")
+
+
+def check_extras() -> None:
+    """Refuses to measure without the packages of all parts."""
+    if found := missing():
+        raise SystemExit(f"packages are missing: pip install '.[{','.join(found)}]' in this clone")
 
 
 def machine() -> str:
@@ -175,6 +181,7 @@ def main(words: Sequence[str] | None = None) -> int:
     if not arguments.pages:
         if not trial:
             check_sources()
+            check_extras()
         asked = [part for part in everything if part.name in (arguments.only or (part.name,))]
         folder = FOLDER / "trial" if trial else FOLDER
         if trial:

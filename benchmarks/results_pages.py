@@ -89,7 +89,7 @@ BLOCKS = (
     of_scoreboard("pictures", lambda of: scoreboard.pictures(failures(of))),
     Block(BENCHMARKS, "attention", (*ATTENTION, *REACTIVE), tables.attention_table),
     Block(BENCHMARKS, "quality", ("maps", MAPS_BESIDE), tables.quality_table),
-    Block(BENCHMARKS, "crowdnav", ("crowdnav", "crowdnav_orca"), tables.crowdnav_table),
+    Block(BENCHMARKS, "crowdnav", VARIANTS, tables.crowdnav_table),
     Block(
         BENCHMARKS,
         "variants",

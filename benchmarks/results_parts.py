@@ -1,5 +1,6 @@
 """The parts of `make results`: what is measured, by which command, and in about how many minutes."""
 
+from importlib.util import find_spec
 from typing import NamedTuple
 
 from dynastar.bench.controllers import controller_named
@@ -55,17 +56,30 @@ def installed(controller: str) -> bool:
     return True
 
 
+def missing() -> list[str]:
+    """The extras that parts need and that are not installed."""
+    needs = {"kompass": installed("kompass_dwa"), "crowdnav": installed("orca")}
+    needs |= {"pedestrians": jupedsim_installed(), "irsim": find_spec("irsim") is not None}
+    needs |= {"navground": find_spec("navground") is not None}
+    needs |= {"physics": find_spec("mujoco") is not None}
+    return [extra for extra, there in needs.items() if not there]
+
+
 def variant_cases() -> str:
-    """The first published seeds of each variant of crowdnav but the first, for ``--select``."""
-    cases = REPORT[:VARIANT_CASES]
-    variants = range(1, len(VARIANTS) - 1)  # the last is ORCA's
-    return ",".join(str(SEEDS * variant + case) for variant in variants for case in cases)
+    """The first published seeds of each other variant of crowdnav, for ``--select``; of ``told`` all."""
+    told = next(number for number, one in enumerate(VARIANTS) if one.told)
+    some = dict.fromkeys(range(1, len(VARIANTS) - 1), REPORT[:VARIANT_CASES])  # the last is ORCA's
+    cases = some | {told: REPORT}
+    return ",".join(
+        f"{SEEDS * number + of.start}:{SEEDS * number + of.stop}" for number, of in cases.items()
+    )
 
 
 def parts() -> list[Part]:
-    """All parts, cheap ones first; those of controllers that are not installed are left out."""
+    """All parts, cheap ones first."""
     orca = SEEDS * (len(VARIANTS) - 1)
-    indifferent = ("--missions", "160", "--attention", "none")
+    late = ("--missions", "160", "--select", "0::4,1::4,2::4")
+    indifferent = (*late, "--attention", "none")
     reactive = ("--missions", "300", "--select", "3::4")
     return [
         paper("presets", 1),
@@ -90,15 +104,14 @@ def parts() -> list[Part]:
         paper("table1", 2),
         bench("crowd_late", 4, suite="crowd"),
         bench("crowd_none", 4, "--attention", "none", suite="crowd"),
-        bench("people_late", 7, "--missions", "160", suite="people"),
+        bench("people_late", 7, *late, suite="people"),
         bench(INDIFFERENT, 6, *indifferent, suite="people"),
-        *([bench("people_reactive", 8, *reactive, suite="people")] if jupedsim_installed() else []),
+        bench("people_reactive", 8, *reactive, suite="people"),
         *(
             bench(f"{INDIFFERENT}-{name}", 5, *indifferent, "--controller", name, suite="people")
             for name in QUICK_COMPETITORS
-            if installed(name)
         ),
-        bench("crowdnav_variants", 2, "--select", variant_cases(), suite="crowdnav"),
+        bench("crowdnav_variants", 5, "--select", variant_cases(), suite="crowdnav"),
         bench("maps", 8),
         bench(MAPS_BESIDE, 7, "--controller", "pure_pursuit", suite="maps"),
         bench("random", 8, "--missions", "200"),

@@ -9,6 +9,8 @@ from contact_causes import CAUSES
 from results_parts import INDIFFERENT, MAPS_BESIDE
 from results_targets import contacts_of, counted, with_interval
 
+from dynastar.bench.statistics import totals
+
 Result = Mapping[str, Any]
 Found = Mapping[str, Any]  # the result of each part
 
@@ -20,7 +22,8 @@ CROWDNAV = """\
 | LSTM-RL [Chen2019] | 0.95 | 0.03 | 11.8 |
 | SARL [Chen2019] | 0.99 | 0.01 | 10.6 |
 | OM-SARL [Chen2019] | 1.00 | 0.00 | 10.5 |
-{navigator}"""
+{navigator}
+{told}"""
 VARIANTS = {
     "circle": "",
     "square": ": a square of 10 m",
@@ -89,7 +92,12 @@ def quality_table(found: Found) -> str:
     ]
     lines = []
     for key, unit in QUALITY.items():
-        ours, other = (fmean(row[key] or 0.0 for row in rows) for rows in zip(*pairs, strict=True))
+        known = [[row[key] for row in pair] for pair in pairs]
+        known = [pair for pair in known if None not in pair]
+        if not known:
+            lines.append((f"`{key}`, {unit}", "", "", ""))
+            continue
+        ours, other = (fmean(values) for values in zip(*known, strict=True))
         ratio = f"{ours / other:.2f}" if other else ""
         if key == "smoothness":
             ratio += ": met" if ours <= 1.2 * other else ": missed"
@@ -107,10 +115,12 @@ def crowdnav_table(found: Found) -> str:
         return f"| {name} | {success:.3f} | {contacts:.3f} | {of['mean_time']:.1f} |"
 
     ours, orca = found["crowdnav"], found["crowdnav_orca"]
+    told = totals([row for row in found["crowdnav_variants"]["rows"] if row["group"] == "told"], 0)
     cases = f"the same {ours['missions']} cases"
     lines = CROWDNAV.format(
         orca=line(f"ORCA, this suite, {cases}", orca),
         navigator=line(f"navigator, by lidar, {cases}", ours),
+        told=line(f"navigator, told positions and velocities, {told['missions']} cases", told),
     )
     head = table(("", "success", "collisions", "time, s"), ())
     return (

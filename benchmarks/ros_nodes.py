@@ -4,8 +4,11 @@ Run it with the Python of an environment that has the extra ros: first one pair 
 fro across the office for some minutes, then each mission starts a pair of its own. Said are arrivals and
 contacts; the time from a scan to its command as a third process hears them, and from the scan's stamp;
 how many commands came within a period of their scan's stamp; and what the navigator's process needs.
+With --guard it is the guard's node instead, which is given speeds at random 20 times a second: the times
+between its commands, contacts, and what its process needs.
 
     make .venvs/ros/.installed && .venvs/ros/bin/python benchmarks/ros_nodes.py --missions 20 --minutes 10
+    .venvs/ros/bin/python benchmarks/ros_nodes.py --guard 2
 """
 
 import argparse
@@ -91,12 +94,11 @@ class Watch:
 
 
 class Nodes:
-    """Both nodes as processes."""
+    """The simulator and another node as processes."""
 
-    def __init__(self, bag: Path | None) -> None:
-        record = ("--ros-args", "-p", f"bag:={bag}") if bag else ()
+    def __init__(self, *words: object) -> None:
         self.simulator = self._start("ros-sim", OFFICE)
-        self.navigator = self._start("ros", "--scenario", OFFICE, *record)
+        self.navigator = self._start(*words)
 
     def _start(self, *words: object) -> subprocess.Popen:
         env = {k: v for k, v in os.environ.items() if k != "_ROS_WHEELS_BOOTSTRAP_COMPLETE"}
@@ -122,7 +124,8 @@ class Nodes:
 
 def run(seconds: float, wait: float, bag: Path | None = None) -> dict[str, float]:
     """One pair of nodes: to and fro for ``seconds``, or with 0 a single mission; recorded to ``bag``."""
-    watch, nodes = Watch(), Nodes(bag)
+    record = ("--ros-args", "-p", f"bag:={bag}") if bag else ()
+    watch, nodes = Watch(), Nodes("ros", "--scenario", OFFICE, *record)
     try:
         started = lambda: "no goal" in watch.state or nodes.navigator.poll() is not None  # noqa: E731
         assert watch.spin(120.0, started), "the navigator says nothing for two minutes"
@@ -162,16 +165,54 @@ def run(seconds: float, wait: float, bag: Path | None = None) -> dict[str, float
         watch.close()
 
 
+def guarded(seconds: float) -> dict[str, float]:
+    """The guard's node behind a controller that draws another pair of speeds every second."""
+    watch = Watch()
+    nodes = Nodes("ros-guard", "--ros-args", "-p", "robot:=pioneer3dx", "-p", "latency:=0.1")
+    given = watch.node.create_publisher(Twist, "cmd_vel_in", 1)
+    draw, message = random.Random(0), Twist()
+    try:
+        assert watch.spin(120.0, lambda: "no command" in watch.state), "the guard says nothing"
+        watch.spin(WARM)
+        watch.commands.clear()
+        used, wall = nodes.cpu_seconds(), time.monotonic()
+        ticks = 0
+        while time.monotonic() - wall < seconds and not watch.contacts:
+            if ticks % 20 == 0:
+                message.linear.x, message.angular.z = draw.uniform(-0.2, 0.55), draw.uniform(-1, 1)
+            given.publish(message)
+            ticks += 1
+            watch.spin(0.05)
+        elapsed = time.monotonic() - wall
+        apart = 1e3 * np.diff(watch.commands)
+        return {
+            "seconds": elapsed,
+            "commands_per_second": len(watch.commands) / elapsed,
+            "apart_median_ms": float(np.median(apart)),
+            "apart_p99_ms": float(np.quantile(apart, 0.99)),
+            "contacts": watch.contacts,
+            "cpu_percent": 100.0 * (nodes.cpu_seconds() - used) / elapsed,
+            "peak_mb": nodes.peak_megabytes(),
+        }
+    finally:
+        nodes.end()
+        watch.close()
+
+
 def main() -> None:
     """Runs what was asked for and prints a line for each run."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--missions", type=int, default=20)
     parser.add_argument("--minutes", type=float, default=10.0)
+    parser.add_argument("--guard", type=float, metavar="MINUTES", help="the guard's node instead")
     parser.add_argument("--json-out", type=Path)
     parser.add_argument("--bags", type=Path, help="new folder for recordings of the missions")
     options = parser.parse_args()
     subprocess.run([sys.executable, "-m", "dynastar", "warmup"], check=True)
     runs = []
+    if options.guard is not None:
+        print({"run": "guard", **guarded(60.0 * options.guard)})
+        return
     if options.minutes > 0.0:
         runs.append({"run": "to and fro", **run(60.0 * options.minutes, 0.0)})
         print(runs[-1], flush=True)

@@ -14,6 +14,7 @@ from results_targets import with_interval
 
 from dynastar.bench.scoreboard_tables import MOST_GROUPS
 from dynastar.bench.selection import REPORT_SEEDS
+from dynastar.bench.statistics import succeeded, totals
 
 DOCS = Path(__file__).parent.parent / "docs"
 PICTURES = DOCS / "media" / "benchmarks"
@@ -23,6 +24,9 @@ KINDS = {
     "no progress": 'says "gave up: no progress"',
     "no way": "says that no way is left or leads to the goal",
     "timeout": "the time is up",
+    "not right": "arrives, but not as it should",
+    "wrong": "a wrong result of the search",
+    "error": "an error",
 }
 
 Row = dict[str, Any]
@@ -30,10 +34,14 @@ Row = dict[str, Any]
 
 def kind_of(row: Row) -> str:
     """Which kind of failure a row is, or "" where it is none."""
-    if row.get("outcome") in ("arrived", "blocked_rightly", None) or row.get("blocked_rightly"):
+    if row.get("outcome") is None or succeeded(row):
         return ""
-    if row["outcome"] == "contact":
-        return "moving" if row["contacts_moving"] else "resting"
+    if row["outcome"] in ("error", "wrong"):
+        return row["outcome"]
+    if row.get("contacts_moving") or row.get("contacts_resting"):
+        return "moving" if row.get("contacts_moving") else "resting"
+    if row["outcome"] == "arrived":
+        return "not right"
     if row["outcome"] == "blocked":
         return "no progress" if "no progress" in row["reason"] else "no way"
     return "timeout"
@@ -128,9 +136,12 @@ def controllers_table(found: dict[str, Any]) -> str:
     titles = " | ".join(f"`{name}`" for name in (found["controller"], *others))
     lines = [f"| suite | {titles} |", f"|---|---{'|---' * len(others)}|"]
     for name, suite in found["suites"].items():
-        beside = [told(of[name]) if name in of else "" for of in others.values()]
-        if any(beside):
-            lines.append(f"| `{name}` | {' | '.join([told(suite), *beside])} |")
+        beside = [of[name] for of in others.values() if name in of]
+        if beside:
+            driven = {row["number"] for row in beside[0]["rows"]}
+            ours = totals([row for row in suite["rows"] if row["number"] in driven], 0)
+            cells = [told(of[name]) if name in of else "" for of in others.values()]
+            lines.append(f"| `{name}` | {' | '.join([told(ours), *cells])} |")
     return "\n".join(lines)
 
 

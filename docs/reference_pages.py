@@ -205,7 +205,7 @@ def _tables(name: str, schema: dict[str, Any]) -> Iterator[str]:
         if inner:
             path = f"{name.strip('[]')}.{key}" if name else key
             nested.append((f"[[{path}]]" if of.get("type") == "array" else f"[{path}]", inner))
-        shown = _default(of.get("default"))
+        shown = _default(of.get("default")) or of.get("otherwise", "")
         if key in schema.get("required", ()):
             shown = "required"
         unit = of.get("unit", "")

@@ -1,8 +1,8 @@
 """Hands the navigator a path to follow, and cancels it under way."""
 
-from dynastar import Navigator, Pose2D, RobotState, World, load_scenario
+from dynastar import Navigator, Pose2D, World, load_scenario
 
-scenario = load_scenario("examples/office/office.toml")
+scenario = load_scenario("office")
 world = World(scenario, Pose2D(2.0, 2.0, 0.0))
 navigator = Navigator(scenario.grid, scenario.robot)
 
@@ -11,7 +11,7 @@ def drive(seconds: float) -> None:
     """Drives until the mission is over and the robot rests, or for so long."""
     end = world.time + seconds
     while world.time < end:
-        state = RobotState(world.time, world.pose, world.twist)
+        state = world.sensed_state()
         world.step(navigator.command(state, world.scan()), 0.1)
         if navigator.status.state in ("arrived", "blocked", "idle") and world.resting:
             break

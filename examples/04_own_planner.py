@@ -6,7 +6,6 @@ from dynastar import (
     OccupancyGrid,
     Path,
     Pose2D,
-    RobotState,
     World,
     load_scenario,
 )
@@ -22,12 +21,12 @@ class Cautious:
         return GridPlanner(grid, radius + 0.25).plan(start, goal).path
 
 
-scenario = load_scenario("examples/office/office.toml")
+scenario = load_scenario("office")
 world = World(scenario, Pose2D(2.0, 2.0, 0.0))
 navigator = Navigator(scenario.grid, scenario.robot, planner=Cautious())
 navigator.set_goal((7.2, 10.0))
 while world.time < 100.0 and navigator.status.state not in ("arrived", "blocked"):
-    state = RobotState(world.time, world.pose, world.twist)
+    state = world.sensed_state()
     world.step(navigator.command(state, world.scan()), 0.1)
 plan = navigator.status.plan
 print(f"{world.time:.1f} s: {navigator.status.state}; planned by {plan.planner if plan else None}")

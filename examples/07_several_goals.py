@@ -1,8 +1,8 @@
 """Visits several goals in order, one of them with a heading, and changes its mind on the way."""
 
-from dynastar import Navigator, Pose2D, RobotState, World, load_scenario
+from dynastar import Navigator, Pose2D, World, load_scenario
 
-scenario = load_scenario("examples/features/goals.toml")
+scenario = load_scenario("goals")
 world = World(scenario, Pose2D(1.5, 1.5, 0.0))
 navigator = Navigator(scenario.grid, scenario.robot)
 
@@ -11,7 +11,7 @@ def drive() -> None:
     """Drives until the last goal is reached, and says when each one is."""
     left = navigator.status.goals_left
     while navigator.status.state not in ("arrived", "blocked") or not world.resting:
-        state = RobotState(world.time, world.pose, world.twist)
+        state = world.sensed_state()
         world.step(navigator.command(state, world.scan()), 0.1)
         if navigator.status.goals_left < left:
             left = navigator.status.goals_left

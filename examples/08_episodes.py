@@ -10,7 +10,7 @@ from dynastar.metrics import measure
 from dynastar.viewer.figure import draw_episode
 
 folder = Path(tempfile.mkdtemp())
-save_episode(run(load_scenario("examples/features/movers.toml"), seed=7), folder / "movers.npz")
+save_episode(run(load_scenario("movers"), seed=7), folder / "movers.npz")
 
 episode = load_episode(folder / "movers.npz")
 for name, value in measure(episode)._asdict().items():

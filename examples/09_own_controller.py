@@ -19,7 +19,7 @@ class Careful(Navigator):
 
 
 for feature in ("speed_limit", "movers"):
-    scenario = load_scenario(f"examples/features/{feature}.toml")
+    scenario = load_scenario(feature)
     for controller in (Navigator, Careful):
         result = measure(run(scenario, navigator=controller))
         print(

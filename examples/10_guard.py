@@ -6,7 +6,7 @@ import numpy as np
 
 from dynastar import Goal, Guard, Pose2D, Twist, World, load_scenario
 
-scenario = load_scenario("examples/features/goals.toml")
+scenario = load_scenario("goals")
 limits, random = scenario.robot.limits, np.random.default_rng(1)
 
 

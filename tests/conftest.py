@@ -30,7 +30,7 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 
 @pytest.fixture(scope="session")
 def data_dir() -> Path:
-    """The public data sets: $DYNASTAR_DATA, else ../shared/data beside the clone, else skip."""
+    """The public data sets, by default of a folder beside the clone; without them, skip."""
     named = os.environ.get("DYNASTAR_DATA")
     folder = Path(named) if named else ROOT.parent / "shared" / "data"
     if named and not folder.is_dir():

@@ -29,6 +29,17 @@ def room(width=8.0, height=6.0, *boxes):
     return OccupancyGrid(occupied, GridFrame(CELL))
 
 
+def driven(robot, pose, twist, command, duration):
+    """Pose and twist of a robot that does exactly as told, after some seconds."""
+    limits = robot.limits
+    after = Twist(
+        slew(twist.v, command.v, limits.v_accel, limits.v_brake, duration),
+        slew(twist.omega, command.omega, limits.omega_accel, limits.omega_brake, duration),
+    )
+    mean = Twist(*(0.5 * (a + b) for a, b in zip(twist, after, strict=True)))
+    return arc(pose, mean, duration), after
+
+
 class Drive:
     """A navigator and a robot that does exactly as told, in a true room."""
 
@@ -55,14 +66,10 @@ class Drive:
         return command
 
     def carry_out(self, command, parts=10):
-        limits, h = self.robot.limits, PERIOD / parts
         for _ in range(parts):
-            after = Twist(
-                slew(self.twist.v, command.v, limits.v_accel, limits.v_brake, h),
-                slew(self.twist.omega, command.omega, limits.omega_accel, limits.omega_brake, h),
+            self.pose, self.twist = driven(
+                self.robot, self.pose, self.twist, command, PERIOD / parts
             )
-            mean = Twist(*(0.5 * (a + b) for a, b in zip(self.twist, after, strict=True)))
-            self.pose, self.twist = arc(self.pose, mean, h), after
         self.now += PERIOD
 
     def until(self, *states, seconds=60.0):

@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 
 from dynastar.errors import NoPath, StartOccupied
+from dynastar.robot import slew
 
 STRAIGHT, DIAGONAL = 985, 1393  # the search's units: 1393 / 985 for sqrt(2)
 STEPS = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)]
@@ -274,3 +275,13 @@ def footprint_gaps(centres, footprint, pose):
         return np.maximum(np.hypot(*(centres - (x, y)).T) - footprint.circumscribed, 0.0)
     placed = footprint.vertices @ np.array([[cos, sin], [-sin, cos]]) + (x, y)
     return shapely.distance(shapely.Polygon(placed), shapely.points(centres))
+
+
+def mean_speed(current, wanted, accel, brake, duration):
+    """Mean of one speed on its way to another: trapezoids between the times at which its ramp bends."""
+    zero = abs(current) / brake if current * wanted < 0.0 else 0.0
+    begin = 0.0 if current * wanted < 0.0 else abs(current)
+    reached = zero + abs(abs(wanted) - begin) / (accel if abs(wanted) > begin else brake)
+    times = sorted({0.0, min(zero, duration), min(reached, duration), duration})
+    speeds = [slew(current, wanted, accel, brake, t) for t in times]
+    return np.dot(np.diff(times), 0.5 * (np.array(speeds[:-1]) + speeds[1:])) / duration

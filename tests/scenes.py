@@ -12,8 +12,8 @@ from dynastar.dwa.rollout import Start
 from dynastar.dwa.scene import AT_REST, Surroundings
 from dynastar.dwa.terms import most_progress
 from dynastar.field import Field
-from dynastar.guidance.cost_to_go import with_descent
-from dynastar.guidance.marching import extend, march, queue_for
+from dynastar.guidance.cost_to_go import End, with_descent
+from dynastar.guidance.marching import Seed, extend, march, queue_for
 from dynastar.perception import PredictionConfig
 from dynastar.perception.hidden import Hidden
 from dynastar.perception.local_map_kernels import BOX
@@ -73,9 +73,12 @@ def centres_of(closed):
     return (np.argwhere(closed)[:, ::-1] + 0.5) * CELL
 
 
-def cost_to_go_of(value, filled, resolution):
+FAR_AWAY = End(1e9, 1e9, 0.0, 1.0)
+
+
+def cost_to_go_of(value, filled, resolution, end=FAR_AWAY):
     """A CostToGo from the values of a march, low corner at the origin."""
-    return with_descent(Field(value, 0.0, 0.0, resolution), filled)
+    return with_descent(Field(value, 0.0, 0.0, resolution), filled, end)
 
 
 def cost_to_go_to(goal, closed, radius):
@@ -83,9 +86,10 @@ def cost_to_go_to(goal, closed, radius):
     n, a = SIDE // 2, 2 * CELL
     room = field_of(closed).values.reshape(n, 2, n, 2).max(axis=(1, 3)) >= radius
     row, column = int(goal[1] / a), int(goal[0] / a)
-    cost = np.where(room, 1.0, np.inf)
-    value = march(cost, a, (row, column, 0.0), (row, column), 99.0, queue_for(n * n))
-    return cost_to_go_of(value, extend(value, a), a)
+    right, up = goal[0] - (column + 0.5) * a, goal[1] - (row + 0.5) * a
+    cost, seed = np.where(room, 1.0, np.inf), Seed(row, column, 0.0, right, up)
+    value = march(cost, a, seed, (row, column), 99.0, queue_for(n * n))
+    return cost_to_go_of(value, extend(value, a), a, End(*goal[:2], 0.0, 1.0))
 
 
 def hidden_in(distance, speed):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from dynastar.geometry import Twist
+from dynastar.geometry import Pose2D, Twist
 from dynastar.ros.bag import BagWriter, make
 from dynastar.ros.outgoing import Messages
 from dynastar.simulation import World
@@ -21,13 +21,15 @@ def by_hand(v, omega, slow_v=(), slow_omega=()):
     return script + [step for one in slow_omega for step in ((0.0, one, 1.2), (0.0, 0.0, 1.2))]
 
 
-def record(folder, scenario, script, stamped=False, noise=0.0, per_command=1):
+def record(folder, scenario, script, stamped=False, noise=0.0, per_command=1, make_world=World):
     """Drives the script in the scenario's world, and writes scans, odometry and commands to a bag.
 
     ``noise`` (m/s, rad/s) is the standard deviation of the odometry's speeds, ``per_command`` how many
-    of its messages there are to a command. The world takes the command anew with each of them.
+    of its messages there are to a command. The world takes the command anew with each of them. It is the
+    simulator's, or ``make_world(scenario, start, seed)``.
     """
-    out, world, random = Messages(make), World(scenario), np.random.default_rng(scenario.seed)
+    out, random = Messages(make), np.random.default_rng(scenario.seed)
+    world = make_world(scenario, Pose2D(*scenario.start), scenario.seed)
     with BagWriter(folder) as bag:
         for v, omega, seconds in script:
             command = Twist(v, omega)

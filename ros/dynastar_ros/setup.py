@@ -23,6 +23,7 @@ setup(
         "console_scripts": [
             "navigator = dynastar_ros:navigator",
             "simulator = dynastar_ros:simulator",
+            "guard = dynastar_ros:guard",
         ]
     },
 )

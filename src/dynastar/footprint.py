@@ -86,6 +86,11 @@ class Footprint:
         return self.circumscribed if self.is_disc else float(np.abs(self.vertices[:, 1]).max())
 
     @property
+    def half_gap(self) -> float:
+        """Half the width (m) of the narrowest gap that the footprint passes, driving straight."""
+        return self.circumscribed if self.is_disc else 0.5 * float(np.ptp(self.vertices[:, 1]))
+
+    @property
     def discs(self) -> npt.NDArray[np.float64]:
         """Discs (k, 3) of centre x, y and radius, metres, that together cover a polygon; (0, 3) of a disc.
 
@@ -108,12 +113,12 @@ class Footprint:
             discs.append((*centre, np.hypot(*(piece - centre).T).max()))
         return np.array(discs)
 
-    def covers(self, points: npt.NDArray[np.float64], margin: float) -> npt.NDArray[np.bool_]:
-        """Whether points (n, 2) lie within the footprint, each side moved out by ``margin`` (m)."""
-        inside = np.hypot(points[:, 0], points[:, 1]) <= self.circumscribed + margin
+    def covers(self, points: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Whether points (n, 2) lie within the footprint."""
+        inside = np.hypot(points[:, 0], points[:, 1]) <= self.circumscribed
         for corner, after in zip(self.vertices, np.roll(self.vertices, -1, axis=0), strict=True):
             (dx, dy), (x, y) = after - corner, (points - corner).T
-            inside &= dx * y - dy * x >= -margin * math.hypot(dx, dy)
+            inside &= dx * y - dy * x >= 0.0
         return np.asarray(inside)
 
     @property

@@ -29,7 +29,8 @@ class LaserScan:
     ``ranges`` (n,) metres: beam i points at ``angle_min + i * angle_increment`` in the sensor's
     frame. ``readings`` says what they mean. ``range_max`` may be +inf: then the robot's ``Lidar`` says
     how far a beam without a return is free. ``mount`` is the sensor's pose on the robot; ``stamp`` the
-    time in seconds of the whole scan.
+    time in seconds of the whole scan. ``frame`` names the lidar where there are several; those without a
+    name are told apart by their mounts.
     Raises InputError for what is not a number.
     """
 
@@ -40,6 +41,7 @@ class LaserScan:
     range_min: float
     range_max: float
     mount: Pose2D = Pose2D(0.0, 0.0, 0.0)
+    frame: str = ""
 
     def __post_init__(self) -> None:
         try:

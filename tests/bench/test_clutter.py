@@ -11,7 +11,7 @@ from dynastar.simulation import Scenario
 
 def row(occupied, driver, number, outcome="blocked", speed=paper.MOVER_SPEED, **more):
     kind = {"occupied": occupied, "speed": speed, "driver": driver}
-    return kind | {"number": number, "outcome": outcome} | more
+    return kind | {"number": number, "outcome": outcome, "grid_turning_points": 3 + number} | more
 
 
 def paper_world(made):
@@ -75,11 +75,11 @@ def test_the_tables_count_each_density_driver_and_speed():
     densities, speeds = clutter.tables(rows)
     assert "were 0 of 2 with 5 % occupied, 3 of 4 with 20 % occupied." in densities.notes
     assert densities.cells[1:] == [
-        ["5 % occupied", "printed", "2", "0", none, "1", half, "0", none, "1", ""],
-        ["5 % occupied", "default", "2", "1", half, "0", none, "1", half, "0", "60.0"],
+        ["5 % occupied", "printed", "2", "4", "0", none, "1", half, "0", none, "1", ""],
+        ["5 % occupied", "default", "2", "4", "1", half, "0", none, "1", half, "0", "60.0"],
     ]
     [line] = speeds.cells[1:]
-    assert (line[:4], line[-1]) == (["1.5 m/s", "default", "1", "1"], "70.0")
+    assert (line[:5], line[-1]) == (["1.5 m/s", "default", "1", "6", "1"], "70.0")
 
 
 def test_a_faster_walker_takes_the_same_way_in_less_time():

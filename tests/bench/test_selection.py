@@ -24,10 +24,12 @@ from made_up_suite import suite
         ("4:4", []),
         ("3,7,20", [3, 7]),
         ("7, 3,3", [3, 7]),
+        ("0::4,1::4,7", [0, 1, 4, 5, 7, 8, 9]),
+        ("1,2:5", [1, 2, 3, 4]),
     ],
 )
 def test_select_is_a_slice(text: str, expected: list[int]) -> None:
-    assert list(parse_select(text).until(10)) == expected
+    assert sorted(parse_select(text).until(10)) == expected
 
 
 @pytest.mark.parametrize(
@@ -44,7 +46,6 @@ def test_select_is_a_slice(text: str, expected: list[int]) -> None:
         ":-2",
         "3,",
         "3,-1",
-        "1,2:5",
         "0:99999999999999999999",
         "1000000",
         "2000000:",

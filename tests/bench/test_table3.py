@@ -120,7 +120,7 @@ def test_the_tables_have_the_printed_figures_beside():
     ]
     assert tuple(many.cells[0][1:-1]) == FIVE
     assert driving.cells[1:] == [
-        ["default", "2", "7.0", "0.50", "0.30", "0.20", "0.40"],
+        ["default", "2", "7.00", "0.50", "0.30", "0.20", "0.40"],
         ["printed", "0", "", "", "", "", ""],
     ]
     assert many.cells[2] == ["smoothed, length m", *3 * ["28.00"], *2 * ["28.00"], ""]

@@ -101,6 +101,7 @@ def command(tmp_path, monkeypatch, runs):
     monkeypatch.setattr(results, "IMPORTED", results.ROOT / "src" / "dynastar")
     monkeypatch.setattr(results, "source", lambda: NOW)
     monkeypatch.setattr(results, "git", lambda *words: "")
+    monkeypatch.setattr(results, "missing", lambda: [])
     monkeypatch.setattr(results.results_pages, "write", lambda *of: written.append(of[1:]) or ())
     monkeypatch.setattr(results.results_pages, "copy_pictures", lambda *of: None)
     return written
@@ -194,6 +195,13 @@ def test_the_list_says_what_is_done(tmp_path, command, capsys):
     [barn] = [line for line in shown if line.startswith("barn ")]
     assert "done in 0" in barn
     assert shown[-1].split()[0] == "all"
+
+
+def test_a_part_whose_packages_are_missing_is_not_begun(tmp_path, command, runs, monkeypatch):
+    monkeypatch.setattr(results, "missing", lambda: ["kompass", "physics"])
+    with pytest.raises(SystemExit, match=r"\.\[kompass,physics\]"):
+        results.main(["--data", str(tmp_path), "--only", "barn"])
+    assert runs == []
 
 
 @pytest.mark.parametrize(

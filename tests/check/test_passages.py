@@ -105,7 +105,7 @@ def test_a_passage_is_as_wide_as_the_widest_disc_that_passes_says(seed):
     radius = _widest(field, ends)[0]
     wide = [one.width for one in found(grid, width=0.0)]
     if radius < 1.0:  # a disc of less than a cell: diagonal steps are judged otherwise
-        assert not wide or min(wide) <= 4.0 * CELL
+        assert not wide or min(wide) <= 5.0 * CELL
     else:
         assert min(wide) >= 2.0 * CELL * radius - 1e-4
         assert min(wide) <= CELL * (2.0 * radius + 3.0)

@@ -68,6 +68,8 @@ class Made:
         elif self.odd == "odometry":
             odd = OUT.odometry(Pose2D(0.3, 0.0, 0.0), Twist(math.nan, 0.0), FRAMES, 8.0)
             bag.write("/odom", ODOMETRY, 9.0, odd)
+        elif self.odd == "command":
+            bag.write("/cmd_vel", "geometry_msgs/msg/Twist", 9.0, OUT.twist(Twist(math.nan, 0.0)))
         elif self.odd == "scan":
             empty = self._scan(8.0)
             empty.ranges = np.empty(0, np.float32)
@@ -205,6 +207,7 @@ def test_a_recording_without_scans_or_that_is_none_is_refused(tmp_path):
         ("tf", "Of /tf 1 message refused, the first since the transform of the frame 'wheel'"),
         ("odometry", "Of odom 1 message refused, the first since the odometry is not finite"),
         ("scan", "Of scan 1 message refused"),
+        ("command", "Of cmd_vel 1 message refused, the first since the command is not finite"),
     ],
 )
 def test_one_bad_message_is_named_and_the_rest_is_checked(tmp_path, what, says):

@@ -23,6 +23,7 @@ from dynastar.dwa.scene import BACK, FOLLOW, STOP, TAILS, Manoeuvre
 from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import ROBOTS, Limits, Robot
+from naive import mean_speed
 from scenes import CELL, boxed, empty, field_of, rules_for, scattered, scene_of, start_of
 
 LIMITS = Limits(1.0, 1.5, 0.8, 2.0, 0.8, 2.0, v_min=-0.3)
@@ -76,7 +77,12 @@ def slow_roll_out(scene, rules, start, manoeuvre):
                     twist.omega, wanted[1], limits.omega_accel, limits.omega_brake, duration
                 ),
             )
-            mean = Twist(0.5 * (twist.v + after.v), 0.5 * (twist.omega + after.omega))
+            mean = Twist(
+                mean_speed(twist.v, wanted[0], limits.v_accel, limits.v_brake, duration),
+                mean_speed(
+                    twist.omega, wanted[1], limits.omega_accel, limits.omega_brake, duration
+                ),
+            )
             pose, twist = drive.arc(pose, mean, duration), after
             at = Pose(pose.x, pose.y, math.cos(pose.theta), math.sin(pose.theta))
             inside = all(RIM * 2 * CELL <= c <= 8.0 - RIM * 2 * CELL for c in pose[:2])
@@ -223,18 +229,18 @@ def test_the_tail_that_reverses_drives_straight_back_at_the_lowest_speed():
 
 @given(
     st.tuples(st.floats(1.0, 7.0), st.floats(1.0, 7.0)), st.floats(-4, 4), st.floats(-0.3, 1.0),
-    st.floats(-0.05, 1.0),
+    st.floats(-0.05, 1.0), st.floats(0.0, 0.5),
 )  # fmt: skip
 @settings(deadline=None)
 def test_to_follow_is_to_turn_to_the_descent_and_to_be_able_to_stop_at_the_goal(
-    place, theta, v, gap
+    place, theta, v, gap, step
 ):
     state, goal = state_at(*place, theta, v, 0.0), (4.0, 4.0)
     left = math.dist(place, goal)
-    to_v, to_omega = follow(EMPTY.cost_to_go, LIMITS, 0.25, state, gap)
+    to_v, to_omega = follow(EMPTY.cost_to_go, LIMITS, 0.25, state, gap, step)
     assert 0.0 <= to_v <= LIMITS.v_max
     assert abs(to_omega) <= LIMITS.omega_max
-    assert to_v**2 / (2.0 * LIMITS.v_brake) <= 1.1 * left + 0.15
+    assert to_v * step + to_v**2 / (2.0 * LIMITS.v_brake) <= 1.1 * left + 0.15
     ahead = 0.5 * v * LIMITS.omega_max / LIMITS.omega_accel  # where the rate has changed
     from_there = place[0] + ahead * math.cos(theta), place[1] + ahead * math.sin(theta)
     bearing = math.atan2(goal[1] - from_there[1], goal[0] - from_there[0])
@@ -243,7 +249,7 @@ def test_to_follow_is_to_turn_to_the_descent_and_to_be_able_to_stop_at_the_goal(
         assert math.copysign(1.0, to_omega) == math.copysign(1.0, off)
     if math.dist(from_there, goal) > 0.5 and abs(off) > 1.0:
         assert to_v < 0.05  # it turns first
-    assert follow(EMPTY.cost_to_go, LIMITS, 0.25, state, 0.0)[0] <= 0.2 * LIMITS.v_max + 1e-9
+    assert follow(EMPTY.cost_to_go, LIMITS, 0.25, state, 0.0, step)[0] <= 0.2 * LIMITS.v_max + 1e-9
 
 
 def test_tails_ask_for_their_speeds():
@@ -251,7 +257,9 @@ def test_tails_ask_for_their_speeds():
     speeds = [tail_speeds(EMPTY.cost_to_go, rules, state, 0.2, tail) for tail in TAILS]
     assert speeds[STOP] == (0.0, 0.0)
     assert speeds[BACK] == (LIMITS.v_min, 0.0)
-    assert speeds[FOLLOW] == follow(EMPTY.cost_to_go, LIMITS, rules.config.comfort, state, 0.2)
+    step = 2.0 * rules.schedule.period
+    expected = follow(EMPTY.cost_to_go, LIMITS, rules.config.comfort, state, 0.2, step)
+    assert speeds[FOLLOW] == expected
 
 
 @pytest.mark.parametrize(

@@ -63,8 +63,9 @@ def slow_value(row):
     left = value_at(SCENE.cost_to_go, row.x, row.y)
     off = abs(turn_to_descent(SCENE.cost_to_go, row, 0.0))
     radius = LIMITS.v_max / LIMITS.omega_max
-    curve = min(radius * off - radius * math.sin(off), left)
-    return left + curve + max(0.0, row.v**2 / (2.0 * LIMITS.v_brake) - left - 0.25)
+    curve = radius * off - radius * math.sin(off)
+    turn = curve if curve < left else 2.0 * left - left**2 / max(curve, 1e-12)
+    return left + turn + max(0.0, row.v**2 / (2.0 * LIMITS.v_brake) - left - 0.25)
 
 
 @given(seeds)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from dynastar.dwa.motion import Pose
 from dynastar.field import bilinear
 from dynastar.guidance import marching
-from dynastar.guidance.cost_to_go import read, trace, turn_to_descent, value_at
+from dynastar.guidance.cost_to_go import End, read, trace, turn_to_descent, value_at
 from dynastar.guidance.travel_cost import travel_cost
 from scenes import cost_to_go_of
 
@@ -18,7 +18,7 @@ A = 0.1
 def marched(cost, row, column):
     """The cost-to-go over cells of ``A`` m whose metre costs ``cost``."""
     queue = marching.queue_for(cost.size)
-    value = marching.march(cost, A, (row, column, 0.0), (row, column), 1e3, queue)
+    value = marching.march(cost, A, marching.Seed(row, column, 0.0), (row, column), 1e3, queue)
     return cost_to_go_of(value, marching.extend(value, A), A)
 
 
@@ -66,6 +66,21 @@ def test_a_value_is_the_bilinear_one_of_the_known_cells_round_the_point(seed):
             assert found == pytest.approx(expected)
         else:  # that of the nearest cell
             assert found == filled[row + (up > 0.5), column + (right > 0.5)]
+
+
+@given(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.floats(0.0, 0.3), st.floats(-3.1, 3.1))
+@settings(deadline=None)
+def test_the_value_falls_to_the_end_wherever_it_lies_in_its_cell(right, up, away, angle):
+    cost, seed = np.ones((30, 30)), marching.Seed(15, 15, 2.0, right * A, up * A)
+    value = marching.march(cost, A, seed, (15, 15), 1e3, marching.queue_for(cost.size))
+    end_x, end_y = (15.5 + right) * A, (15.5 + up) * A
+    made = cost_to_go_of(value, marching.extend(value, A), A, End(end_x, end_y, 2.0, 1.0))
+    dx, dy = math.cos(angle), math.sin(angle)
+    found, ux, uy = read(made, end_x + away * dx, end_y + away * dy)
+    assert found == pytest.approx(2.0 + away, abs=1e-9 if away < A else 0.5 * A)
+    if 1e-6 < away < A:
+        assert (ux, uy) == pytest.approx((-dx, -dy))
+    assert read(made, end_x, end_y) == (2.0, 0.0, 0.0)
 
 
 @given(st.floats(-3.1, 3.1), st.floats(-3.1, 3.1))

@@ -26,11 +26,12 @@ class Case:
         for x0, y0, x1, y1 in np.round(np.array(walls) / CELL).astype(int).reshape(-1, 4):
             free[y0:y1, x0:x1] = 0
         self.obstacles = Field(lower_bounds(free, CELL), 0.0, 0.0, CELL)
+        self.closed = np.zeros((SIDE, SIDE), np.bool_)
 
     def guide(self, points, here=HERE, s=0.0, moving=NOTHING, ahead=math.inf):
         target = PathTarget(Path(np.array(points, float)), s, ahead)
         encounter = Encounter(*here, 1.0, 0.3, *TIMES[:2], 1.0)
-        return self.guidance.update(self.obstacles, target, moving, encounter)
+        return self.guidance.update(self.obstacles, self.closed, target, moving, encounter)
 
 
 @pytest.mark.parametrize("goal", [(7.0, 5.0), (14.0, 5.0), (5.0, 40.0), (8.0, 8.0), (-20.0, -20.0)])
@@ -38,6 +39,15 @@ def test_on_an_empty_map_the_cost_to_go_is_what_is_left_of_the_path(goal):
     guide = Case().guide([HERE, goal])
     assert guide.reachable
     assert guide.cost_at(*HERE) == pytest.approx(math.dist(HERE, goal), rel=0.05, abs=0.15)
+
+
+def test_no_way_leads_through_what_is_closed_to_plans_but_for_the_path():
+    case = Case((6.5, 0.0, 6.7, 4.5), (6.5, 5.5, 6.7, 8.5))  # a gap of 1 m, and a way round
+    through, round_it = [HERE, (8.5, 5.0)], [HERE, (6.0, 9.25), (7.2, 9.25), (8.5, 5.0)]
+    assert case.guide(round_it).cost_at(*HERE) < 6.0
+    case.closed[90:110, 128:136] = True
+    assert case.guide(round_it).cost_at(*HERE) > 9.0
+    assert case.guide(through).cost_at(*HERE) < 6.0
 
 
 def test_it_falls_by_what_is_driven():

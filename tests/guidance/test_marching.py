@@ -13,7 +13,7 @@ A = 0.1
 
 
 def march(cost, row, column, begin=0.0, stop=None, beyond=1e3):
-    seed, stop = (row, column, begin), stop or (row, column)
+    seed, stop = marching.Seed(row, column, begin), stop or (row, column)
     return marching.march(cost, A, seed, stop, beyond, marching.queue_for(cost.size))
 
 
@@ -23,10 +23,16 @@ def walled(inner):
 
 
 def by_heap(cost, seed):
-    """Fast marching by the book: the least of the open values is final."""
+    """Fast marching by the book: the least of the open values is final. Exact around the seed."""
     value = np.full(cost.shape, np.inf)
     value[seed] = 0.0
-    done, queue = np.zeros(cost.shape, bool), [(0.0, seed)]
+    for i, j in marching.AROUND:
+        (r, c), at = seed, (seed[0] + i, seed[1] + j)
+        if max(cost[at], cost[r + i, c], cost[r, c + j]) < np.inf:
+            value[at] = math.hypot(i, j) * A * cost[at]
+    done = np.zeros(cost.shape, bool)
+    queue = [(value[r, c], (r, c)) for r, c in np.argwhere(np.isfinite(value)).tolist()]
+    heapq.heapify(queue)
     while queue:
         _, (row, column) = heapq.heappop(queue)
         if done[row, column]:
@@ -81,6 +87,19 @@ def test_a_queue_of_buckets_gives_what_a_heap_gives(seed, dearest):
     cost[start] = 1.0
     expected = by_heap(cost, start)
     np.testing.assert_allclose(march(cost, *start), expected, atol=1e-3)
+
+
+@given(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5))
+@settings(max_examples=40, deadline=None)
+def test_values_grow_from_a_point_that_is_no_cells_centre(right, up):
+    seed = marching.Seed(20, 20, 3.0, right * A, up * A)
+    cost = walled(np.ones((39, 39)))
+    cost[20, 21] = np.inf
+    value = marching.march(cost, A, seed, (20, 20), 1e3, marching.queue_for(cost.size))
+    assert value[20, 21] == np.inf
+    for row, column in ((20, 20), (19, 20), (20, 19), (17, 16), (5, 20), (30, 8)):
+        away = math.hypot(column - 20 - right, row - 20 - up) * A
+        assert value[row, column] == pytest.approx(3.0 + away, rel=0.03, abs=0.03)
 
 
 def test_a_slow_region_costs_as_much_more_as_it_is_slow():

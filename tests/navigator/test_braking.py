@@ -48,7 +48,7 @@ def test_the_stop_ends_on_the_arc_it_was_certified_on(limits, v, omega, period):
     pose = start = Pose2D(0.0, 0.0, 0.0)
     stop, ticks = StopProfile(twist, limits), 0
     while (twist.v or twist.omega) and ticks < 1000:
-        pose, twist = drive(pose, twist, stop.next(twist, period), limits, period)
+        pose, twist = drive(pose, twist, stop.next(twist, period, period), limits, period)
         ticks += 1
     duration = stopping_time(Twist(v, omega), limits)
     expected = arc(start, Twist(v, omega), 0.5 * duration)
@@ -63,7 +63,7 @@ def test_the_stop_ends_on_the_arc_it_was_certified_on(limits, v, omega, period):
 def test_braking_is_never_harder_than_the_limits(limits, v, omega):
     twist, stop = Twist(v, omega), StopProfile(Twist(v, omega), limits)
     for _ in range(50):
-        command = stop.next(twist, 0.1)
+        command = stop.next(twist, 0.1, 0.1)
         assert abs(command.v - twist.v) <= limits.v_brake * 0.1 + 1e-9
         assert abs(command.omega - twist.omega) <= limits.omega_brake * 0.1 + 1e-9
         assert abs(command.v) <= abs(twist.v) + 1e-9
@@ -103,7 +103,7 @@ def test_stops_are_certified_for_every_latency_up_to_the_declared_one(latency):
     state = RobotState(3 * period, pose, twist)
     acting = commands.when_one_acts(state)
     stops = commands.stops_from(state, acting, commands.carried_on(acting[1]))
-    assert len(stops) == 1 + 3 * math.ceil(latency / 0.1)
+    assert len(stops) == 2 * (1 + 3 * math.ceil(latency / 0.1))  # as measured, and as told
     assert stops[-1].pose == acting[0]
     for true in np.linspace(0.0, latency, 6):
         expected, _ = commands.when_one_acts(state, float(true))

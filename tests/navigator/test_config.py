@@ -1,6 +1,7 @@
 import pytest
 
 from dynastar.navigator.config import CELLS, NavigatorConfig, fitted
+from dynastar.perception import LocalMapConfig
 from dynastar.robot import Robot
 
 
@@ -26,3 +27,9 @@ def test_nothing_but_the_cells_is_changed():
     cells = {"local_map": config.local_map, "resolution": config.resolution}
     got = fitted(config, a_robot(0.1))._replace(**cells)
     assert got == config
+
+
+@pytest.mark.parametrize("size", [2.0, 3.0, 3.9])
+def test_a_small_robots_local_map_may_be_as_small_as_any(size):
+    config = NavigatorConfig(local_map=LocalMapConfig(size=size))
+    assert fitted(config, a_robot(0.105)).local_map.size == pytest.approx(max(2.0, 0.525 * size))

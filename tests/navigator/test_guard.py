@@ -13,7 +13,7 @@ from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.masks import with_keepout, with_speed_limits
 from dynastar.navigator import Guard, Guarded, Navigator, NavigatorConfig, RobotState
-from dynastar.navigator.guard import STEADY
+from dynastar.navigator.guard import STEADY, STOP_POSES
 from dynastar.perception import MovingObstacle
 from dynastar.robot import ROBOTS, Lidar, Limits, Robot, slew
 from dynastar.simulation import Drivetrain, Noise, Scenario, World
@@ -348,6 +348,15 @@ def test_a_drive_that_needs_more_than_is_asked_for_stands(v, omega):
     drive = GuardedDrive(robot=replace(ROUND, limits=limits))
     for given in drive.drive(Twist(v, omega), 1.0):
         assert given.command == (0.0, 0.0)
+        assert given.reason == "slower than the drive can"
+
+
+def test_the_stop_is_drawn_from_where_the_robot_is_also_while_it_brakes():
+    drive = GuardedDrive()
+    assert drive.guard.stop.shape == (0, 3)
+    drive.drive(Twist(0.5, 0.0), 2.0)
+    drive.drive(None, 1.0)
+    assert drive.guard.stop == pytest.approx(np.tile(drive.world.pose, (STOP_POSES, 1)), abs=0.05)
 
 
 def test_states_of_a_clock_that_stands_are_not_kept():

@@ -14,6 +14,7 @@ from dynastar.navigator.last_turn import turn_by
 from dynastar.robot import ROBOTS, Lidar, Limits, Robot, slew
 from dynastar.simulation import Scenario, World
 
+SHORT_BY = 0.09  # rad
 LIMITS = Limits(0.6, 1.0, 1.0, 2.0, 1.0, 2.0, v_min=-0.3)
 CART = Robot(
     "cart",
@@ -65,10 +66,10 @@ def test_a_long_robot_turns_the_long_way_round_where_the_short_one_is_shut():
 
 def test_on_a_map_of_another_yaw_a_place_to_turn_is_looked_for_anew():
     grid, robot = OccupancyGrid(room().refined(2).values, 0.05), ROBOTS["jackal"]
-    start = Pose2D(4.0, 0.4, 0.0)
+    start = Pose2D(4.0, 0.42, 0.0)
     world = World(Scenario("turn", grid, robot, tuple(start), ()), start)
     navigator = Navigator(grid, robot, NavigatorConfig())
-    navigator.set_goal((4.0, 0.4, 1.57))
+    navigator.set_goal((4.0, 0.42, 1.57))
 
     def tick():
         state = RobotState(world.time, world.pose, world.twist)
@@ -81,7 +82,7 @@ def test_on_a_map_of_another_yaw_a_place_to_turn_is_looked_for_anew():
     navigator.set_map(free)
     while navigator.mission.under_way:
         tick()
-        assert math.dist(start[:2], world.pose[:2]) < 0.4
+        assert math.dist(start[:2], world.pose[:2]) < 0.6
     assert navigator.status.state == "arrived"
 
 
@@ -100,13 +101,11 @@ def test_the_turn_is_within_the_limits_and_ends_at_the_angle(angle, omega, least
     limits, period = LIMITS._replace(omega_least=least), 0.05
     twist, left = Twist(0.0, omega), angle
     for _ in range(400):
-        command = turn_by(left, twist, limits, period)
+        command = turn_by(left, SHORT_BY, twist, limits, period)
         assert abs(command.omega) <= max(limits.omega_max, abs(omega))
         assert command.omega == 0.0 or abs(command.omega) >= least
         reached = slew(twist.omega, command.omega, limits.omega_accel, limits.omega_brake, period)
         left -= 0.5 * (twist.omega + reached) * period
         twist = Twist(0.0, reached)
-        if abs(left) < 0.1 and abs(twist.omega) <= max(0.1, least):
-            break
     assert abs(left) < 0.1
-    assert np.isfinite(left)
+    assert abs(twist.omega) < 0.1

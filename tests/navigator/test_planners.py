@@ -176,3 +176,24 @@ def test_a_bent_way_out_is_judged_along_its_bend():
             tight if width is made.by_width[-1] else lead
         )
         assert (made.plan(START, GOAL) is not tight) == kept
+
+
+@pytest.mark.parametrize("finer", [1, 4])
+def test_a_local_map_shows_where_no_plan_leads(finer):
+    grid = room().refined(finer)
+    made = Planners(PlanningMap(grid, 0.1), CONFIG, (0.3, 0.25))
+    show(made, SEEN_OCCUPIED, 3.0, 2.0, 3.5, 4.0)
+    local_map = LocalMap(CONFIG.local_map, *made.planning_map.lattice)
+    local_map.follow(6.0, 3.0)
+    closed = made.closed_under(local_map)
+    tight = made.by_width[-1]
+    a, (left, low) = local_map.resolution, local_map.origin
+    for row, column in np.argwhere(np.ones_like(closed)):
+        x, y = left + column * a, low + row * a
+        if not (0.0 <= x < 8.0 and 0.0 <= y < 6.0):
+            assert closed[row, column]
+            continue
+        first = np.round(np.array([y, x]) / grid.resolution).astype(int)
+        part = tight.inflated[first[0] : first[0] + finer, first[1] : first[1] + finer]
+        assert closed[row, column] == part.all()
+    assert 0 < np.count_nonzero(~closed) < closed.size / 2

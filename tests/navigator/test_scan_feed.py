@@ -50,9 +50,9 @@ def test_a_frozen_lidar_is_tried_again_more_and_more_seldom_slowly_and_not_far()
     at, fastest, moves, rested = drive.pose, 0.0, 0, 1.0
     for _ in range(600):
         drive.tick(with_ranges(drive.scan(), ranges))
-        fastest = max(fastest, abs(drive.twist.v))
-        moves += rested >= 1.0 and drive.twist.v > 0.0
-        rested = rested + 0.1 if drive.twist.v == 0.0 else 0.0
+        fastest, moving = max(fastest, abs(drive.twist.v)), drive.twist != (0.0, 0.0)
+        moves += rested >= 1.0 and moving
+        rested = 0.0 if moving else rested + 0.1
     assert 2 <= moves <= 1 + math.log2(60.0 / FIRST_WAIT)
     assert 0.0 < fastest < 0.11
     assert math.dist(at[:2], drive.pose[:2]) < 0.1 * moves
@@ -80,7 +80,7 @@ def test_what_is_tried_is_slow_and_a_speed_that_the_drive_follows(
     command = Twist(*asked)
     assert sensing.on_trial(state, command) == command
     for source in sensing.feed._sources.values():
-        source.is_frozen = True
+        source.trouble = REPEATED
     tried = sensing.on_trial(state, command)
     assert tried == pytest.approx(slow)
     for speed, least in zip(tried, (v_least, omega_least), strict=True):

@@ -37,6 +37,21 @@ def test_an_occupied_goal_is_waited_for_near_by_and_reached_once_it_is_free(box)
     assert math.dist(drive.pose[:2], GOAL) <= 0.25
 
 
+@pytest.mark.parametrize("goal", [(4.2, 2.2), (5.5, 1.8), (5.8, 1.8), (6.4, 2.4)])
+def test_a_robot_that_waits_stands_still(goal):
+    x, y = goal
+    drive = drive_to(goal, (x - 0.2, y - 0.2, x + 0.2, y + 0.2), stuck_time=60.0)
+    drive.until("waiting", seconds=20.0)
+    drive.for_seconds(3.0)
+    turned, before = 0.0, drive.pose
+    for _ in range(200):
+        heading = drive.pose.theta
+        drive.tick()
+        turned += abs(math.remainder(drive.pose.theta - heading, math.tau))
+    assert turned < 5.0
+    assert math.dist(drive.pose[:2], before[:2]) < 0.1
+
+
 def test_an_obstacle_at_the_goal_that_never_moves_ends_the_mission_in_time():
     drive = drive_to(GOAL, (5.8, 2.8, 6.2, 3.2))
     drive.until("waiting")

@@ -275,7 +275,8 @@ def test_what_lies_between_two_beams_is_free_as_far_as_their_gap(
     free_at = np.full((100, 100), NEVER)
     angle_min = -math.radians(fov) / 2
     beams = angle_min, increment, n, full
-    mark_free(free_at, (0.05, 0.0, 0.0), gaps, Sensor(7.0, *sensor, *beams))
+    layers = free_at, np.zeros(free_at.shape, np.uint8)
+    mark_free(layers, (0.05, 0.0, 0.0), gaps, Sensor(7.0, *sensor, *beams), 1)
     rows, columns = np.indices(free_at.shape)
     centres = np.column_stack([columns.ravel() * 0.05 + 0.025, rows.ravel() * 0.05 + 0.025])
     free, past, at_end = observed_free(gaps, angle_min, increment, full, sensor, centres)

@@ -223,6 +223,20 @@ def test_the_mount_of_the_lidar_is_from_tf_unless_it_is_given(bridge):
     assert bridge._scan.mount == ROBOTS["turtlebot3_burger"].lidar.mount
 
 
+@pytest.mark.parametrize(("turn", "drops"), [(0.0, False), (math.pi, True)])
+def test_what_a_lidar_saw_is_dropped_when_it_turns_out_to_be_mounted_otherwise(bridge, turn, drops):
+    feed(bridge, 0.0)
+    before = bridge.navigator.sensing
+    lidar = ROBOTS["turtlebot3_burger"].lidar.mount
+    mount = Pose2D(lidar.x, lidar.y, turn)
+    bridge.take("/tf_static", OUT.transforms([("base_link", "laser", mount)], 0.0))
+    feed(bridge, 0.1)
+    after = bridge.navigator.sensing
+    assert (after is not before) == drops
+    feed(bridge, 0.2)
+    assert bridge.navigator.sensing is after
+
+
 def test_masks_become_keepout_zones_and_speed_limits(bridge):
     zone = np.zeros_like(ROOM)
     zone[40:60, 40:60] = 100
@@ -274,8 +288,47 @@ def test_a_clock_that_goes_back_drops_the_goal_and_the_data(bridge):
     assert not bridge.jumped(99.9)
     assert bridge.jumped(3.0)
     bridge.request(restart="the clock went back")
+    assert bridge.navigator.mission.goals == []
     assert bridge.tick(3.0).reason == "no odometry has come yet"
     assert feed(bridge, 3.05).state == "idle"
+
+
+@pytest.mark.parametrize(
+    "request_", [{"restart": "the clock went back"}, {"settings": {"dwa": {"horizon": 2.5}}}]
+)
+def test_a_robot_under_way_goes_on_with_its_certified_stop(bridge, request_):
+    feed(bridge, 100.0)
+    bridge.take("goal_pose", a_goal(4.0, 2.5))
+    before, fast = feed(bridge, 100.05).command, Twist(0.2, 0.0)
+    for k in range(2, 12):
+        before = feed(bridge, 100.0 + 0.05 * k, twist=fast).command
+    bridge.request(**request_)
+    after = bridge.tick(100.6 if "settings" in request_ else 3.0).command
+    assert 0.0 < before.v - after.v <= bridge.config.period * bridge.robot.limits.v_brake + 1e-9
+
+
+def test_other_settings_set_no_robot_off_that_gave_up(bridge):
+    feed(bridge, 100.0)
+    bridge.take("goal_pose", a_goal(4.0, 2.5))
+    bridge.navigator.mission.block("no way is left")
+    bridge.request(settings={"dwa": {"horizon": 2.5}})
+    assert feed(bridge, 100.1).state == "idle"
+
+
+def test_settings_that_cannot_be_used_change_nothing(bridge, monkeypatch):
+    before = bridge.config, bridge.navigator
+    monkeypatch.setattr("dynastar.ros.bridge.Navigator", lambda *given: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        bridge.request(settings={"dwa": {"horizon": 2.5}})
+    assert (bridge.config, bridge.navigator) == before
+
+
+def test_a_given_path_is_kept_by_other_settings(bridge):
+    feed(bridge, 100.0)
+    bridge.request(follow=([[1.0, 2.5], [3.0, 2.5]], 0.0))
+    bridge.request(settings={"dwa": {"horizon": 2.5}})
+    assert bridge.navigator.route.given is not None
+    assert bridge.navigator.mission.goals == [(3.0, 2.5, 0.0)]
 
 
 def test_a_driver_can_be_made_again_from_its_first_request():

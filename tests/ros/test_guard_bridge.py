@@ -1,6 +1,7 @@
 """A guard fed with messages: commands in and out, and what is late, wrong or missing brakes it."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -191,6 +192,9 @@ def test_a_clock_that_went_back_starts_it_anew(loop):
     assert loop.bridge.jumped(2.0) is False
     assert loop.bridge.jumped(1.0)
     loop.bridge.request(restart="the clock went back")
-    assert loop.tick(command=None, data=False).guarded.command == Twist(0.0, 0.0)
-    assert loop.ticks(30)[-1].guarded.command == AHEAD
+    brake = PERIOD * ROBOTS["turtlebot3_burger"].limits.v_brake
+    speeds = [AHEAD.v, *(loop.tick(command=None, data=False).guarded.command.v for _ in range(20))]
+    assert speeds[-1] == 0.0
+    assert all(before - brake - 1e-9 <= after <= before for before, after in pairwise(speeds))
+    assert loop.ticks(80)[-1].guarded.command == AHEAD
     assert loop.bridge.frame == "odom"

@@ -6,24 +6,30 @@ import tomllib
 from pathlib import Path
 from xml.etree import ElementTree
 
+import pytest
 import yaml
+
+from dynastar.config import checked
+from dynastar.navigator import NavigatorConfig
+from dynastar.ros.settings import GuardSettings, NodeSettings, fields_of, nested
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "ros" / "dynastar_ros"
 TOPICS = {"/map", "/local_map", "/scan", "/plan", "/local_plan", "/markers", "/odom", "/goal_pose"}
 
 
-def test_its_parameters_are_those_of_the_node():
-    from dynastar.config import checked
-    from dynastar.navigator import NavigatorConfig
-    from dynastar.ros.settings import NodeSettings, fields_of, nested
-
-    given = yaml.safe_load((PACKAGE / "config" / "dynastar.yaml").read_text())
+@pytest.mark.parametrize(
+    ("file", "kinds"),
+    [("dynastar", [NodeSettings]), ("guard", [NodeSettings, GuardSettings])],
+)
+def test_its_parameters_are_those_of_the_node(file, kinds):
+    given = yaml.safe_load((PACKAGE / "config" / f"{file}.yaml").read_text())
     values = given["/**"]["ros__parameters"]  # in any namespace
-    own = fields_of(NodeSettings)
-    checked(NodeSettings, {name: value for name, value in values.items() if name in own})
-    others = nested({name: value for name, value in values.items() if name not in own})
-    checked(NavigatorConfig, others)
+    for kind in kinds:
+        own = {name: values.pop(name) for name in fields_of(kind) if name in values}
+        assert own
+        checked(kind, own)
+    checked(NavigatorConfig, nested(values))
 
 
 def test_its_version_and_licence_are_those_of_the_project():

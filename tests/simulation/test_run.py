@@ -227,10 +227,26 @@ def test_the_real_navigator_crosses_an_empty_room():
     assert episode.clearance.min() > 3.0
 
 
-@pytest.mark.parametrize("error", [StartOccupied("it stands in a wall"), OutOfMap("off the map")])
-def test_a_bad_start_is_raised(error):
-    with pytest.raises(type(error), match=str(error)):
-        run(scenario(), navigator=saying((0.0, {"state": "blocked", "error": error})))
+def test_a_bad_start_is_raised():
+    said = {"state": "blocked", "error": OutOfMap("off the map")}
+    with pytest.raises(OutOfMap, match="off the map"):
+        run(scenario(), navigator=saying((0.0, said)))
+
+
+def test_a_start_with_room_for_the_robot_and_not_for_its_margin_is_blocked():
+    corridor = np.ones((60, 200), bool)
+    corridor[4:16, 1:-1] = False  # 0.6 m wide
+    corridor[1:, 160:-1] = False
+    grid = OccupancyGrid(corridor, GridFrame(0.05))
+    slim = Robot("slim", QUICK.limits, Footprint.disc(0.25))
+    wide = {"pose_error": 0.1}
+    episode = run(
+        scenario(
+            grid=grid, robot=slim, start=(5.0, 0.5, 0.0), goals=(Goal(9.0, 1.5),), navigator=wide
+        )
+    )
+    assert episode.outcome == "blocked"
+    assert "the start (5, 0.5)" in episode.reason
 
 
 def test_no_way_is_an_outcome_and_no_goal_is_an_error():

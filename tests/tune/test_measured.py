@@ -3,6 +3,7 @@
 import math
 import tomllib
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from dynastar import io
 from dynastar.cli import main
 from dynastar.errors import DataError
 from dynastar.footprint import Footprint
-from dynastar.geometry import Goal
+from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.robot import ROBOTS, Lidar, Limits, Robot
 from dynastar.simulation import Noise, Scenario
 from dynastar.simulation.imperfections import ControlLoop, Drivetrain, LidarDriver, Odometry, Post
@@ -233,8 +234,49 @@ def test_the_command_writes_the_file_and_names_what_is_missing(drives, tmp_path,
     assert "--hours goes with a search, not with --bag" in capsys.readouterr().err
     assert main(["tune", "--bag", bag, "--topic", "speed=/cmd_vel"]) == 2
     assert "NAME one of scan, odom, cmd_vel" in capsys.readouterr().err
+    assert main(["tune", "--bag", bag, "--out", "-"]) == 2
+    assert "--out -: expected a file" in capsys.readouterr().err
     with pytest.raises(DataError, match="no such recording"):
         read_drive(tmp_path / "nothing")
+
+
+def test_without_a_robot_the_lidar_is_the_one_that_the_scans_tell_of(tmp_path):
+    lidar = Lidar(181, math.pi, 0.2, 5.0)
+    scenario = replace(PLAIN, robot=replace(ROBOT, lidar=lidar))
+    record(tmp_path / "bag", scenario, by_hand(0.5, 1.2))
+    drive = replace(read_drive(tmp_path / "bag"), robot=None)
+    file = tmp_path / "robot.toml"
+    file.write_text(robot_toml(measured(drive), "bag"))
+    found = io.load_robot(file)[0].lidar
+    assert (found.beams, found.range_min, found.range_max) == pytest.approx((181, 0.2, 5.0))
+    assert found.fov == pytest.approx(math.pi)
+
+
+def test_a_drive_that_is_slower_than_told_is_not_declared_exact(tmp_path):
+    slow = Drivetrain(gain_v=0.9, gain_omega=0.9)
+    record(tmp_path / "bag", replace(PLAIN, drive=slow), by_hand(0.5, 1.2))
+    found = measured(read_drive(tmp_path / "bag"), ROBOT)
+    gains = [found.estimates[f"gain_{name}"] for name in ("v", "omega")]
+    assert all(one.high < 1.0 for one in gains)
+    file = tmp_path / "robot.toml"
+    file.write_text(robot_toml(found, "bag"))
+    error = io.load_robot(file)[1].drive_error
+    for fast, slow in [(a.high, b.low) for a in gains for b in gains]:  # whichever is the faster
+        assert (1.0 + error) / (1.0 - error) >= 0.9999 * fast / slow
+
+
+def test_a_command_that_is_not_finite_is_named(drives, monkeypatch):
+    from dynastar.tune import recording
+
+    read, count = recording.twist_of, iter(range(10**9))
+
+    def odd(message):
+        twist = read(message)
+        return twist._replace(v=math.nan) if next(count) == 7 else twist
+
+    monkeypatch.setattr(recording, "twist_of", odd)
+    found = measured(read_drive(drives[0][1]))
+    assert any("is not finite" in line for line in found.left_out)
 
 
 def test_what_a_robot_file_declares_and_no_recording_tells_is_kept(drives, tmp_path):
@@ -328,3 +370,35 @@ def test_of_two_lidars_the_one_with_more_scans_is_measured(drives, tmp_path, mon
     found = measured(read_drive(drives[0][1]))
     assert found.estimates["range_error"].high < 0.1
     assert "another lidar has more scans" in found.left_out[0]
+
+
+@pytest.mark.parametrize(("number", "loaded"), [(0, False), (0, True), (1, True), (2, False)])
+def test_a_robot_of_forces_and_masses_stops_as_the_file_says(number, loaded, tmp_path):
+    """MuJoCo: motors of limited torque, which follow the commanded speed after a while."""
+    pytest.importorskip("mujoco")
+    from dynastar.bench.suites.physics import BODIES, GENTLE, LATENCY
+    from dynastar.bench.suites.physics_world import PhysicsWorld
+
+    robot, body = BODIES[number]
+    limits = robot.limits._replace(**GENTLE, v_min=-robot.limits.v_max)
+    robot = replace(robot, limits=limits)
+    scenario = replace(PLAIN, robot=robot, latency=LATENCY, noise=Noise(0.01))
+    world = partial(PhysicsWorld, body=body, floor=0.9, loaded=loaded)
+    fast = 0.8 * limits.v_max
+    record(tmp_path / "bag", scenario, by_hand(fast, 0.8 * limits.omega_max), make_world=world)
+    found = measured(read_drive(tmp_path / "bag"), robot).estimates
+    for name in ("odometry_gain_v", "odometry_gain_omega", "period", "beams"):
+        truth = truth_of(scenario)[name]
+        assert found[name].low <= truth <= found[name].high, found[name].words()
+    delay = LATENCY + body.response(loaded)
+    assert found["latency"].low <= delay
+    assert LATENCY <= found["latency"].high <= delay + 0.1
+    driven = world(scenario, Pose2D(6.0, 6.0, 0.0), 0)
+    for _ in range(60):
+        driven.step(Twist(fast, 0.0), 0.05)
+    speed, began = driven.twist.v, driven.pose.x
+    assert found["gain_v"].low <= speed / fast <= found["gain_v"].high
+    for _ in range(80):
+        driven.step(Twist(0.0, 0.0), 0.05)
+    stop = speed * found["latency"].high + 0.5 * speed**2 / found["v_brake"].low
+    assert 0.45 * stop < driven.pose.x - began <= stop

@@ -1,14 +1,20 @@
 """A search on a made-up robot, whose missions take no time: it improves, stops, resumes, and judges."""
 
 import json
+from contextlib import nullcontext
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from dynastar.bench.missions import Mission
-from dynastar.errors import InputError
-from dynastar.navigator import NavigatorConfig
+from dynastar.errors import DynastarError, InputError
+from dynastar.footprint import Footprint
+from dynastar.io import load_robot
+from dynastar.navigator import NavigatorConfig, configured
+from dynastar.robot import ROBOTS
 from dynastar.tune.results import tuned_toml, write_results
+from dynastar.tune.robot_file import declared_table
 from dynastar.tune.sampler import importances, propose
 from dynastar.tune.search import Plan, Search
 from dynastar.tune.space import SPACE, start_values
@@ -101,7 +107,7 @@ def test_what_mattered_is_found(found, tmp_path):
     write_results(tmp_path, state, SMALL, judged(state), None)
     page = (tmp_path / "report.html").read_text("utf-8")
     assert "In SI units; limits are fractions of the robot's own." in page
-    assert page.count("<tr") == 31
+    assert page.count("<tr") == 32
     assert page.count("<svg") == 1
     assert "better than the default" in page
 
@@ -152,6 +158,55 @@ def test_the_search_leaves_time_for_the_final_comparison(tmp_path, monkeypatch):
     search.judge(iter(REPORT), 1000)
     assert len(state.report_tuned) == len(REPORT)
     assert state.spent_s < 400.0
+
+
+def test_a_comparison_that_used_up_its_time_is_not_extended(tmp_path):
+    driver = Driver()
+    state = searched(tmp_path, driver)
+    before, state.spent_s = len(state.report_tuned), 1e9
+    state.report_default, state.report_tuned = state.report_default[:8], state.report_tuned[:8]
+    Search(state, tmp_path, START, Plan(1e9, batch=4), driver, str).judge(iter(REPORT), 40)
+    assert (before, len(state.report_tuned)) == (40, 8)
+
+
+@pytest.mark.parametrize("of_default", [True, False])
+def test_a_mission_that_fails_ends_a_search_of_the_default_and_is_named_else(tmp_path, of_default):
+    def drive(worlds, values):
+        rows = [mission(world, values, 0.0) for world in worlds]
+        if (values == START) == of_default:
+            rows[0] |= {"outcome": "error", "reason": "no data"}
+        return rows
+
+    said = []
+    ends = pytest.raises(DynastarError, match=r"with the default .*: made 0: no data")
+    search = Search(State({}), tmp_path, START, Plan(1e9, 2, 4), drive, said.append)
+    with ends if of_default else nullcontext():
+        search.run(SMALL, WORLDS)
+    assert of_default != any(line.endswith("a mission fails: made 0: no data") for line in said)
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_so_many_settings_are_tried_besides_the_default(tmp_path, count):
+    assert len(searched(tmp_path, Driver(), settings=count).finished) == 1 + count
+
+
+def test_worlds_that_were_seen_before_are_named(found):
+    state, _ = found
+    assert judged(state).words in judged(state, ["barn"]).words
+    assert "the worlds of barn are those of the search again" in judged(state, ["barn"]).words
+
+
+def test_a_robots_tuned_file_is_one_to_use(found, tmp_path):
+    state, _ = found
+    robot = replace(ROBOTS["jackal"], name="mine", footprint=Footprint.disc(0.3))
+    config = configured("default", {"latency": 0.2, "dwa": {"reach": 0.5}})
+    file = tmp_path / "tuned.toml"
+    file.write_text(tuned_toml(state, judged(state), declared_table(robot, config)))
+    made, used = load_robot(file)
+    assert (made.limits, made.lidar) == (robot.limits, robot.lidar)
+    assert made.footprint.circumscribed == 0.3
+    assert (used.latency, used.dwa.reach) == (0.2, 0.5)
+    assert used.dwa.horizon > 5.5
 
 
 def test_nothing_is_better_where_no_setting_matters(tmp_path):

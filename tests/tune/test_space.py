@@ -1,12 +1,23 @@
 """The searched settings are the navigator's, and the promise's bounds are none of them."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
+
+import pytest
 
 from dynastar.bench.presets import settings_of
 from dynastar.navigator import NavigatorConfig, configured
 from dynastar.robot import ROBOTS
-from dynastar.tune.space import OF_ROBOT, SPACE, limited, settings_table, start_values, widened
+from dynastar.tune.space import (
+    OF_ROBOT,
+    SPACE,
+    limited,
+    of_robot,
+    settings_table,
+    start_values,
+    widened,
+)
 
 PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "tune.md"
 
@@ -46,3 +57,13 @@ def test_limits_are_fractions_of_the_robots_own():
     slow = limited(robot, {"limits.v_max": 0.8, "comfort": 0.1})
     assert slow.limits == robot.limits._replace(v_max=0.8 * robot.limits.v_max)
     assert all(parameter.high == 1.0 for parameter in OF_ROBOT)
+
+
+@pytest.mark.parametrize(("least", "names"), [(0.0, {"v_max", "omega_max"}), (0.9, {"omega_max"})])
+def test_no_speed_is_searched_below_the_least_that_the_drive_follows(least, names):
+    limits = ROBOTS["pioneer3dx"].limits
+    limits = limits._replace(v_least=limits.v_max if least else 0.0, omega_least=least)
+    robot, found = replace(ROBOTS["pioneer3dx"], limits=limits), of_robot(limits)
+    assert {one.name for one in found} == {f"limits.{name}" for name in names}
+    for end in ("low", "high"):
+        limited(robot, {one.name: getattr(one, end) for one in found})

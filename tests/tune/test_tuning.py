@@ -20,7 +20,7 @@ from dynastar.robot import Robot
 from dynastar.tune.search import Plan
 from dynastar.tune.state import alone_in, load_state
 from dynastar.tune.tuning import Task, tune
-from dynastar.tune.worlds import RobotWorlds, suites_of, worlds_of
+from dynastar.tune.worlds import RobotWorlds, seen_before, suites_of, worlds_of
 
 MINE = Robot.simple(0.3, 0.7, "mine")
 OPTIONS = ["--suite", "tuned", "--worlds", "8", "--settings", "5", "--workers", "1", "--hours", "1"]
@@ -144,6 +144,17 @@ def test_the_worlds_of_the_final_comparison_are_others(monkeypatch):
     monkeypatch.setattr(tuned_bench, "missions", lambda options: map(Mission, range(5)))
     again = worlds_of(suites, Options(seed=10_000), after=4, count=2)
     assert [(one.mission.number, one.seed) for one in again] == [(1, 10_000), (2, 10_000)]
+    assert seen_before(suites, Options(seed=10_000), 4) == ["tuned"]
+    assert seen_before(suites, Options(seed=10_000), 2) == []
+
+
+def test_no_published_case_is_searched():
+    searched, final = (
+        {one.mission.number for one in worlds_of({"crowdnav": "crowdnav"}, options, count=30)}
+        for options in (Options(), Options(seed=10_000))
+    )
+    assert searched == set(range(30))
+    assert final == set(range(1000, 1030))
 
 
 def test_one_mission_for_a_robot_of_a_file(tmp_path):
@@ -169,6 +180,8 @@ def test_without_optuna_the_extra_is_named(monkeypatch, capsys):
     ("words", "said"),
     [
         (["--hours", "0"], "--hours 0: expected 0.001 or more"),
+        (["--out", "-"], "--out -: expected a file"),
+        (["--dask", "tcp://host:1", "--workers", "2"], "--workers goes with processes here"),
         (["--robot", "none.toml"], "none.toml: there is no such file"),
         (["--robot", "jackle"], "unknown robot 'jackle' (did you mean 'jackal'?)"),
     ],

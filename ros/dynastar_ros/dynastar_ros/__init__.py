@@ -13,3 +13,8 @@ def navigator() -> int:
 def simulator() -> int:
     """Runs ``dynastar ros-sim`` with the arguments of a launch file."""
     return main(["ros-sim", *sys.argv[1:]])
+
+
+def guard() -> int:
+    """Runs ``dynastar ros-guard`` with the arguments of a launch file."""
+    return main(["ros-guard", *sys.argv[1:]])

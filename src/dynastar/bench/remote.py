@@ -54,6 +54,16 @@ def completed_remotely(
         client.close()
 
 
+def jobs_at_once(address: str) -> int:
+    """The number of jobs that a cluster does at once. Raises InputError as ``completed_remotely``."""
+    client = _client(address)
+    try:
+        _check_workers(client, address)
+        return len(client.nthreads())  # each process does one at a time
+    finally:
+        client.close()
+
+
 def _client(address: str) -> Any:
     try:
         from distributed import Client

@@ -46,8 +46,33 @@ class Listed(NamedTuple):
         return [one for one in self.numbers if one < number]
 
 
-def parse_select(text: str) -> Slice | Listed:
-    """The numbers that "A:B:C", with any part left out, or "N" or "N,N,N" stand for; else InputError."""
+class Several(NamedTuple):
+    """The numbers of several slices and lists."""
+
+    parts: tuple["Slice | Listed", ...]
+
+    @property
+    def stop(self) -> int | None:
+        """The number after the last; None: without end."""
+        stops = [part.stop for part in self.parts if part.stop is not None]
+        return max(stops) if len(stops) == len(self.parts) else None
+
+    def until(self, number: int) -> Collection[int]:
+        """Numbers of all of them below ``number``."""
+        return {one for part in self.parts for one in part.until(number)}
+
+
+def parse_select(text: str) -> Slice | Listed | Several:
+    """The numbers that slices "A:B:C" (any of the three may be left out) and numbers stand for.
+
+    Several of them are separated by commas. Raises InputError for anything else.
+    """
+    if ":" in text and "," in text:
+        return Several(tuple(_one_of(part) for part in text.split(",")))
+    return _one_of(text)
+
+
+def _one_of(text: str) -> Slice | Listed:
     parts = text.split(":")
     try:
         if len(parts) == 1:
@@ -63,8 +88,8 @@ def parse_select(text: str) -> Slice | Listed:
     except ValueError:
         pass
     raise InputError(
-        f"--select {shown(text)}: expected A:B:C (from A, below B, every C-th), N or N,N,N, "
-        f"none negative or {MOST} and more"
+        f"--select {shown(text)}: expected A:B:C (from A, below B, every C-th) or N, or several of them "
+        f"separated by commas, none negative or {MOST} and more"
     )
 
 
@@ -102,7 +127,9 @@ def choose_missions(suite: Suite, options: Options) -> tuple[list[Mission], Coun
     return chosen, skipped + Counter({ABSENT: asked - present})
 
 
-def _selected(missions: Iterable[Mission], select: Slice | Listed | None) -> Iterator[Mission]:
+def _selected(
+    missions: Iterable[Mission], select: Slice | Listed | Several | None
+) -> Iterator[Mission]:
     for mission in missions:
         if select is None:
             yield mission

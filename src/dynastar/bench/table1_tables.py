@@ -33,11 +33,14 @@ FIVE = ("lower quartile", "median", "upper quartile", "p95", "worst")
 WORDS = {
     "expanded_ratio": "cells expanded, Euclidean",
     "expanded_ratio_octile": "cells expanded, octile",
+    "expanded_ratio_weighted": "cells expanded, Euclidean: weighted A*, w = 2",
     "search_time_ratio": "time of the search",
+    "search_time_ratio_weighted": "time of the search: weighted A*, w = 2",
     "total_time_ratio": "time with fast smoothing / search alone",
     "grid_length_ratio": "length, grid path",
     "length_ratio": "length, any angle",
     "length_ratio_fast": "length, fast smoothing",
+    "length_ratio_fast_weighted": "length, fast smoothing: weighted A*, w = 2",
     "length_ratio_same_smoothing": "length, both smoothed fast",
     "any_angle_ratio": "any angle / optimum over centres",
     "fast_ratio": "fast / optimum over centres",
@@ -75,7 +78,7 @@ def _own(row: Row) -> Table:
             *((f"paper's {what}", "d") for what in ("cells", "length", "ms")),
         ),
         lines,
-        "Cells expanded, length in cells, time of search and smoothing; the paper's are of its own map.",
+        "Cells expanded, length in cells, time of search and smoothing; the paper's are of its map.",
     )
 
 

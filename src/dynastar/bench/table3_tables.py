@@ -94,28 +94,34 @@ def _drivers_table(rows: Mapping[str, Sequence[Row]]) -> Table:
 def _driving_table(rows: Mapping[str, Sequence[Row]]) -> Table:
     """How evenly and how near to things they drive."""
     figures = ("turning_angle", "smoothness", "jerk", "min_clearance", "mean_speed")
+    beside = {row["number"]: row for row in rows["default"] if row["outcome"] == "arrived"}
     lines: list[tuple[Cell, ...]] = []
     for driver, of in rows.items():
-        arrived = [row for row in of if row["outcome"] == "arrived"]
-        medians: list[Cell] = [
-            float(np.median([row[name] for row in arrived])) if arrived else None
-            for name in figures
-        ]
-        lines.append((DRIVERS[driver].name, len(arrived), *medians))
+        both = [row for row in of if row["outcome"] == "arrived" and row["number"] in beside]
+        cells: list[Cell] = []
+        for name in figures:
+            if not both:
+                cells.append(None)
+                continue
+            own = np.median([row[name] for row in both])
+            default = np.median([beside[row["number"]][name] for row in both])
+            cells.append(f"{own:.2f}" if driver == "default" else f"{own:.2f} ({default:.2f})")
+        lines.append((DRIVERS[driver].name, len(both), *cells))
     return Table(
         "table3-driving",
         "How they drive in the worlds of Table III",
         (
             ("", ""),
-            ("arrived", "d"),
-            ("turned, rad", ".1f"),
-            ("smoothness, rad/s/m", ".2f"),
-            ("jerk, m/s3", ".2f"),
-            ("smallest clearance, m", ".2f"),
-            ("mean speed, m/s", ".2f"),
+            ("worlds", "d"),
+            ("turned, rad", ""),
+            ("smoothness, rad/s/m", ""),
+            ("jerk, m/s3", ""),
+            ("smallest clearance, m", ""),
+            ("mean speed, m/s", ""),
         ),
         lines,
-        "Medians over the worlds in which each arrived: all that the heading has turned, the variation "
+        "Medians over the worlds in which it and the default arrived, and in brackets the default's in the "
+        "same worlds: all that the heading has turned, the variation "
         "of the turning rate over the length, the RMS of the jerk.",
     )
 

@@ -88,8 +88,8 @@ def brakes(robot: Robot, config: NavigatorConfig) -> Finding:
     """Whether the declared braking and drive can be true."""
     limits = robot.limits
     text = (
-        f"The robot is taken to brake at {limits.v_brake:g} m/s2 or more, and to drive at most "
-        f"{100.0 * config.drive_error:g} % faster than told."
+        f"The robot is taken to brake at {limits.v_brake:g} m/s2 or more, and each of its "
+        f"speeds to be at most {100.0 * config.drive_error:g} % off what is commanded."
     )
     values = {"v_brake": limits.v_brake, "drive_error": config.drive_error}
     if limits.v_brake > STRONG_BRAKE:
@@ -138,7 +138,7 @@ def blind_sectors(robot: Robot, config: NavigatorConfig) -> Finding:
     if close > BLIND:
         text += f"; obstacles within {close:.2f} m of its side can be nearer than range_min"
         advice.append("Mount the lidar further inside, or declare a footprint that contains this.")
-    if not robot.footprint.covers(np.array([(lidar.x, lidar.y)]), 0.0)[0]:
+    if not robot.footprint.covers(np.array([(lidar.x, lidar.y)]))[0]:
         text += "; the lidar is outside of the footprint"
         advice.append("Correct its mount, or declare a footprint that contains all of the robot.")
     level: Level = "warning" if advice else "ok"

@@ -20,6 +20,7 @@ SIDE, CELL = 12.0, 0.1  # m of the hall, for a robot of RADIUS
 RADIUS = 0.3
 BUSY = 0.5  # of the period that a tick may take
 SLOW_SHARE = 95  # percentile of the ticks that counts
+ROUNDED = 1e-9  # of a period that was calculated
 
 Floats = npt.NDArray[np.float64]
 
@@ -97,7 +98,7 @@ def delays(robot: Robot, config: NavigatorConfig) -> Finding:
     )
     level: Level = "ok"
     advice = []
-    if age < 2.0 * period:
+    if age < (2.0 - ROUNDED) * period:
         level = worst(level, "problem" if age <= period else "warning")
         advice.append(
             f"Declare scan_age = {at_least(2.0 * period)} or more, or the robot brakes for nothing."

@@ -12,8 +12,9 @@ def at_rest(robot: Robot, config: NavigatorConfig) -> Finding:
     """What the guarantee says of obstacles at rest."""
     text = (
         f"Obstacles at rest, {config.local_map.narrowest:g} m wide or more at the height of the lidar, "
-        f"are not touched as long as ranges are off by {config.range_error:.3g} m at most, positions by "
-        f"{config.pose_error:.3g} m and headings by {config.heading_error:.3g} rad."
+        f"are not touched by a robot that moves, as long as ranges are off by {config.range_error:.3g} m "
+        f"at most, positions by {config.pose_error:.3g} m and headings by {config.heading_error:.3g} rad, "
+        f"commands act within {config.latency:.3g} s, and drive, brakes and period are as declared."
     )
     margin = margin_of(robot, config)
     values = {"margin": margin}

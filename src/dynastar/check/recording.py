@@ -105,7 +105,7 @@ class _Collected:
     mounts: dict[str, Pose2D] = field(default_factory=dict)  # of lidars, by frame
 
     def __post_init__(self) -> None:
-        self.readings = Readings(self.robot, self.config)
+        self.readings = Readings(self.robot)
         self.acting = LatencyCheck(self.robot.limits, self.config.latency)
         self.latency: float | None = None
         self.transforms = Transforms()
@@ -126,8 +126,11 @@ class _Collected:
             self.refused.setdefault(short, []).append(str(error))
 
     def _take_command(self, at: float, message: Any) -> None:
+        command = twist_of(getattr(message, "twist", message))
+        if not all(map(math.isfinite, command)):
+            raise InputError("the command is not finite")
         self.commands.append(at)
-        self.asked = twist_of(getattr(message, "twist", message))
+        self.asked = command
 
     def _take_odometry(self, message: Any) -> None:
         stamp, twist = seconds(message.header.stamp), twist_of(message.twist.twist)

@@ -81,7 +81,7 @@ def _add_missions(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--select",
         metavar="A:B:C",
-        help="a slice over the suite's own numbers, or some of them (3,7,20)",
+        help="a slice over the suite's own numbers, some of them (3,7,20), or both (0:9,20::4)",
     )
     parser.add_argument(
         "--seed",

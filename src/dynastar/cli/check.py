@@ -3,6 +3,7 @@
 import argparse
 import sys
 import textwrap
+import warnings
 from typing import TYPE_CHECKING
 
 from dynastar import io
@@ -78,6 +79,7 @@ def execute(arguments: argparse.Namespace) -> int:
     from dynastar.check import check_robot
     from dynastar.cli.compiling import prepare
     from dynastar.cli.replay import topic_table
+    from dynastar.ros.bag import BagReader
 
     robot, config, grid = _given(arguments)
     if arguments.bag is not None:
@@ -85,9 +87,12 @@ def execute(arguments: argparse.Namespace) -> int:
     else:
         refuse_unheard(arguments, {"topic": []}, "goes with --bag")
     folder = None if arguments.out is None else make_folder("--out", arguments.out)
+    topics = topic_table(arguments.topic, TOPICS)
+    if arguments.bag is not None:  # refused before the kernels are compiled
+        with warnings.catch_warnings(action="ignore"):
+            BagReader(arguments.bag).close()
     if not arguments.no_time:
         prepare()
-    topics = topic_table(arguments.topic, TOPICS)
     check = check_robot(robot, config, grid, arguments.bag, topics, not arguments.no_time)
     if folder is not None:
         from dynastar.check.report import write_check

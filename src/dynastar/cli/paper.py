@@ -25,18 +25,18 @@ examples:
   dynastar paper all --json-out paper.json
 
   presets   the settings in which the presets paper and default differ
-  table1    traditional against improved A*, on the own map, over maps of 40 x 40 cells (random, rooms,
-            maze, office; corner to corner), and over a tenth as many of 512 x 512; 2 minutes
-  table3    the improved A* alone against the hybrid, in the own world and over worlds of 20 x 20 cells
-            with unknown blocks and a mover, by the presets default and paper, a tenth of them by the
-            controller printed, a fifth by the default with plain A*, and a fifth without a planner;
-            90 minutes for 1000
+  table1    traditional against improved A*, on the generated map, over maps of 40 x 40 cells (random,
+            rooms, maze, office; corner to corner), and over a tenth as many of 512 x 512; 2 minutes
+  table3    the improved A* alone against the hybrid, in the generated world and over worlds of 20 x 20
+            cells with unknown blocks and a mover, by the presets default and paper, a tenth of them by
+            the controller printed, a fifth by the default with plain A*, and a fifth without a planner;
+            80 minutes for 1000
   clutter   the controller printed in two readings, and the default, over worlds with 0 to 30 % of the
             map's cells occupied; the default over walkers' speeds; 30 minutes for 50 of each
   ladder    the controller printed made the default navigator, a change at a time, over worlds of the
-            suite paper; 1 hour for 200
+            suite paper; 45 minutes for 200
   ablation  each term of Eqs. 2 and 9 left out or read otherwise, and each part of the whole, on worlds
-            of the suites paper and people; 2 hours for 100 of each
+            of the suites paper and people; 45 minutes for 50 of each
   figures   Figs. 1 to 8; 10 seconds
 
 Times are for two cores. Writes tables (.md), a line for each map or world (.csv) and pictures (.png,

@@ -1,14 +1,10 @@
 """``dynastar ros``: the navigator as a ROS 2 node."""
 
 import argparse
-from pathlib import Path
 
 from dynastar import io
 from dynastar.cli.parsing import path
-from dynastar.config import choose
 from dynastar.extras import require
-from dynastar.io.examples import example_scenarios
-from dynastar.simulation import Scenario
 
 DESCRIPTION = (
     "Runs the navigator as a ROS 2 node: it takes map, scan, odom and goal_pose and "
@@ -38,7 +34,7 @@ def execute(arguments: argparse.Namespace) -> int:
     """Runs the node until it is interrupted."""
     from dynastar.cli.compiling import prepare
 
-    scenario = None if arguments.scenario is None else load_named(arguments.scenario)
+    scenario = None if arguments.scenario is None else io.load_scenario(arguments.scenario)
     require("ros", "ROS 2 nodes need")
     prepare()
     from dynastar.ros.main import navigate
@@ -46,9 +42,3 @@ def execute(arguments: argparse.Namespace) -> int:
 
     given = [] if scenario is None else parameters_of(scenario)
     return navigate([*given, *arguments.ros_args])
-
-
-def load_named(given: Path) -> Scenario:
-    """The scenario of a file, or of an example's name such as ``office``."""
-    named = given.suffix == "" and not given.is_file()
-    return io.load_scenario(choose(str(given), example_scenarios(), "scenario") if named else given)

@@ -3,8 +3,9 @@
 import argparse
 from pathlib import Path
 
+from dynastar import io
 from dynastar.cli.parsing import path
-from dynastar.cli.ros import EXAMPLES, load_named
+from dynastar.cli.ros import EXAMPLES
 from dynastar.extras import require
 
 __all__ = ["DESCRIPTION", "EXAMPLES", "add_arguments", "execute"]
@@ -31,7 +32,7 @@ def execute(arguments: argparse.Namespace) -> int:
     """Runs the node until it is interrupted."""
     from dynastar.cli.compiling import prepare
 
-    scenario = load_named(arguments.scenario)
+    scenario = io.load_scenario(arguments.scenario)
     require("ros", "ROS 2 nodes need")
     prepare()
     from dynastar.ros.main import simulate

@@ -9,7 +9,7 @@ from typing import Any
 
 from dynastar import io
 from dynastar.cli.arguments import add_robot
-from dynastar.cli.outputs import check_file, make_folder
+from dynastar.cli.outputs import check_file, make_folder, refuse_dash
 from dynastar.cli.parsing import count, number, path, refuse_unheard, seed
 from dynastar.errors import InputError, ScenarioError
 from dynastar.extras import require
@@ -28,10 +28,11 @@ examples:
   dynastar tune --bag drive.mcap --robot my_robot.toml --out measured.toml
 
 Every setting drives the same worlds; poor ones are stopped early. The best one is compared with the
-default in other worlds, of report seeds. Writes tuned.toml, report.html and state.json into PATH. A search
-that was stopped goes on when the command is given again. The robot's file has the keys of a scenario:
-[robot], [sensor], [navigator]. `random` and `people` are drawn for it, other suites have robots of their
-own. The bounds of the no-contact guarantee are never changed.
+default in other worlds, of report seeds (of a suite that has no more, in the same ones with other
+noise). Writes tuned.toml, report.html and state.json into PATH. A search that was stopped resumes when
+the command is given again. The robot's file has the keys of a scenario: [robot], [sensor], [navigator].
+`random` and `people` are drawn for it, other suites have robots of their own. The bounds of the
+no-contact guarantee are never changed.
 
 --bag reads scans, odometry and commands of a drive, and writes latency, gains, accelerations, dead band,
 range noise and the robot's own parts in view, each with its evidence, into the new file PATH."""
@@ -67,7 +68,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="time in all (default 2)",
     )
     parser.add_argument(
-        "--settings", type=count, metavar="N", help="stop the search after N settings"
+        "--settings",
+        type=count,
+        metavar="N",
+        help="stop the search after N settings besides the default",
     )
     parser.add_argument(
         "--worlds",
@@ -116,6 +120,7 @@ def _measure(arguments: argparse.Namespace) -> int:
     from dynastar.tune.recording import read_drive
 
     refuse_unheard(arguments, SEARCHING, "goes with a search, not with --bag")
+    refuse_dash("--out", arguments.out)
     file = check_file("--out", arguments.out or Path("robot.toml"))
     assert file is not None
     if file.exists():  # perhaps written by hand
@@ -139,6 +144,7 @@ def _measure(arguments: argparse.Namespace) -> int:
 
 def _search(arguments: argparse.Namespace) -> int:
     require("tune", "tuning needs")
+    from dynastar.bench.remote import jobs_at_once
     from dynastar.bench.workers import pool
     from dynastar.cli.compiling import prepare
     from dynastar.cli.robots import named_robot
@@ -154,8 +160,13 @@ def _search(arguments: argparse.Namespace) -> int:
         robot, config = named_robot(arguments.robot)
     names = tuple(dict.fromkeys(arguments.suite.split(",")))
     task = Task(names, arguments.worlds, robot, config, arguments.data, arguments.seed)
+    if arguments.dask is not None:
+        refuse_unheard(arguments, {"workers": None}, "goes with processes here, not with --dask")
+    refuse_dash("--out", arguments.out)
     folder = make_folder("--out", arguments.out or Path("out/tune"))
     processes = arguments.workers or os.cpu_count() or 1
+    if arguments.dask is not None:
+        processes = jobs_at_once(arguments.dask)
     at_once = max(4, 2 * processes)
     plan = Plan(3600.0 * arguments.hours, arguments.settings, at_once, arguments.seed)
     prepare()

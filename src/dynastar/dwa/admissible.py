@@ -7,7 +7,7 @@ import math
 
 from dynastar.compiled import inner, njit
 from dynastar.dwa.clearance import ROUNDING, body_distance, clearance_slack, least_clearance
-from dynastar.dwa.motion import State, driven, moved, state_of, stopping_time
+from dynastar.dwa.motion import State, driven, moved, parts_of, ramped_both, state_of, stopping_time
 from dynastar.perception.hidden import HIDDEN_RADIUS, SLACK
 from dynastar.perception.prediction import TRACKING_ERROR
 
@@ -60,29 +60,73 @@ def is_admissible(around, rules, stops_from, command):
 def certified_stop(around, rules, state, command, hold):
     """ADMISSIBLE if the robot can come to rest in observed-free space after ``hold`` s of ``command``.
 
-    Over a period each speed changes at its own limit; after ``hold``, if that is longer, both ramp to
-    zero in proportion, along one arc. ``state`` is that in which the command begins to act. All speeds
-    may be greater than said by ``drive_error``, and so are the ways.
+    ``state`` is that in which the command begins to act. Each speed may be off by ``drive_error`` either
+    way, and a speed in the drive's dead band may drop to zero before its ramp ends.
     """
-    closed, margin = around.closed, around.margin_to_closed
-    body, limits, start = rules.body, rules.fast_limits, state.pose
-    half, more = 0.5 * rules.period, 1.0 + rules.drive_error
-    longer = max(hold - rules.period, 0.0)
-    v, omega = command
-    v, omega = more * v, more * omega
-    state = State(start, more * state.v, more * state.omega)
-    for duration in (half, half, longer):
-        after = driven(state, v, omega, limits, duration)
-        mean = 0.5 * duration
-        arc = mean * (state.v + after.v), mean * (state.omega + after.omega)
-        if not keeps_clear(closed, body, margin, start, state.pose, arc):
+    more, less = 1.0 + rules.drive_error, 1.0 - rules.drive_error
+    (v, omega), hold = command, max(hold, rules.period)
+    is_arc = (state.v != 0.0 or v != 0.0) and (state.omega != 0.0 or omega != 0.0)
+    has_least = rules.limits.v_least > 0.0 or rules.limits.omega_least > 0.0
+    for gains in ((more, more), (more, less), (less, more)):
+        if not stop_keeps_clear(around, rules, state, (v, omega, hold), gains, False):
             return NO_STOP
-        state = after
-    half_stop = 0.5 * stopping_time(state.v, state.omega, limits)
-    arc = half_stop * state.v, half_stop * state.omega
-    if not keeps_clear(closed, body, margin, start, state.pose, arc):
-        return NO_STOP
+        if not is_arc:
+            break
+        if has_least and not stop_keeps_clear(around, rules, state, (v, omega, hold), gains, True):
+            return NO_STOP
+        if more == less:
+            break
     return ADMISSIBLE
+
+
+@inner
+def stop_keeps_clear(around, rules, state, held, gains, ends_early):
+    """Whether a command ``held`` (v, omega, for how long in s), and the stop after it, keep clear.
+
+    While it is held each speed changes at its own limit; then both ramp to zero in proportion, along
+    one arc. If the stop ``ends_early``, the speed that first falls into its dead band brakes at its own
+    limit from there. ``gains`` are driven over commanded speeds (v, omega).
+    """
+    body, limits, pose = rules.body, rules.limits, state.pose
+    closed, margin, start = around.closed, around.margin_to_closed, state.pose
+    (v, omega, hold), (v_gain, omega_gain) = held, gains
+    parts = parts_of(hold)
+    for part in range(parts + (3 if ends_early else 1)):
+        if part < parts:
+            speeds, (length, angle) = ramped_both(state, v, omega, limits, hold / parts)
+            state = State(start, *speeds)
+        else:
+            length, angle = stop_part(state, limits, ends_early, part - parts)
+        arc = v_gain * length, omega_gain * angle
+        if not keeps_clear(closed, body, margin, start, pose, arc):
+            return False
+        pose = moved(pose, arc[0], arc[1])
+    return True
+
+
+@inner
+def stop_part(state, limits, ends_early, part):
+    """The arc (length in m, angle in rad) of one part of a stop: all of it, unless it ``ends_early``.
+
+    Then there are three: until one speed falls into its dead band, while that brakes, and the rest.
+    """
+    v, omega = state.v, state.omega
+    stop = stopping_time(v, omega, limits)
+    if not ends_early:
+        return 0.5 * stop * v, 0.5 * stop * omega
+    share_v, share_omega = least_share(v, limits.v_least), least_share(omega, limits.omega_least)
+    v_ends, share = share_v >= share_omega, max(share_v, share_omega)
+    brakes = share * (abs(v) / limits.v_brake if v_ends else abs(omega) / limits.omega_brake)
+    shares = (1.0, share, max(0.0, share - brakes / max(stop, 1e-9)), 0.0)
+    on_ramp = 0.5 * stop * (shares[part] ** 2 - shares[part + 1] ** 2)
+    alone = (on_ramp, 0.5 * brakes * share, 0.0)[part]
+    return (alone if v_ends else on_ramp) * v, (on_ramp if v_ends else alone) * omega
+
+
+@inner
+def least_share(speed, least):
+    """The fraction of a ``speed`` at which its dead band begins, 1 if it lies in it."""
+    return min(1.0, least / abs(speed)) if speed != 0.0 else 0.0
 
 
 @inner

@@ -63,8 +63,8 @@ class Rules(NamedTuple):
     """What does not change from tick to tick: robot, settings, and times.
 
     Samples are held as long as ``schedule`` says, or for ``long_hold`` (s). ``risk_radius`` (m) is
-    that of the disc that stands for the robot in the risk, ``drive_error`` the fraction by which speeds
-    may be off, with ``fast_limits`` then.
+    that of the disc that stands for the robot in the risk, ``drive_error`` the fraction by which
+    either speed may be off.
     """
 
     body: Body
@@ -75,7 +75,6 @@ class Rules(NamedTuple):
     period: float
     risk_radius: float
     drive_error: float
-    fast_limits: Limits
 
 
 def body_of(robot: Robot) -> Body:
@@ -127,7 +126,6 @@ def rules_of(robot: Robot, config: DwaConfig, period: float, drive_error: float 
         period=period,
         risk_radius=0.5 * (shape.inscribed + shape.circumscribed),
         drive_error=drive_error,
-        fast_limits=Limits._make((1.0 + drive_error) * limit for limit in robot.limits),
     )
 
 

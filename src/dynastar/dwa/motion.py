@@ -7,6 +7,8 @@ import numpy as np
 
 from dynastar.compiled import inner, njit
 
+PART = 0.05  # s, of a motion whose speeds change
+
 
 class Pose(NamedTuple):
     """A pose as kernels take it: position (m), cosine and sine of the heading."""
@@ -108,15 +110,38 @@ def moved(pose, length, angle):
 
 
 @inner
-def driven(state, wanted_v, wanted_omega, limits, duration):
-    """The state after ``duration`` seconds of ramping towards the wanted speeds.
+def ramped(current, wanted, accel, brake, duration):
+    """One speed after ``duration`` seconds on its way to ``wanted``, and the way until then."""
+    after = slew(current, wanted, accel, brake, duration)
+    if current * after < 0.0:
+        to_zero = abs(current) / brake
+        way = after * (duration - to_zero) - 0.5 * after * abs(after) / accel
+        return after, 0.5 * current * to_zero + way
+    change, rate = current - after, accel if abs(after) > abs(current) else brake
+    return after, after * duration + 0.5 * change * abs(change) / rate
 
-    The arc is driven at the mean of the speeds before and after.
-    """
-    v = slew(state.v, wanted_v, limits.v_accel, limits.v_brake, duration)
-    omega = slew(state.omega, wanted_omega, limits.omega_accel, limits.omega_brake, duration)
-    length, angle = 0.5 * (state.v + v) * duration, 0.5 * (state.omega + omega) * duration
+
+@inner
+def ramped_both(state, wanted_v, wanted_omega, limits, duration):
+    """Both speeds after ``duration`` s, and the arc driven meanwhile: length (m) and angle (rad)."""
+    v, length = ramped(state.v, wanted_v, limits.v_accel, limits.v_brake, duration)
+    omega, angle = ramped(
+        state.omega, wanted_omega, limits.omega_accel, limits.omega_brake, duration
+    )
+    return (v, omega), (length, angle)
+
+
+@inner
+def driven(state, wanted_v, wanted_omega, limits, duration):
+    """The state after ``duration`` seconds of ramping towards the wanted speeds, along one arc."""
+    (v, omega), (length, angle) = ramped_both(state, wanted_v, wanted_omega, limits, duration)
     return State(moved(state.pose, length, angle), v, omega)
+
+
+@inner
+def parts_of(duration):
+    """In how many parts a motion of ``duration`` s is followed, so that each is nearly an arc."""
+    return int(math.ceil(duration / PART - 1e-9))
 
 
 @njit(cache=True)
@@ -127,9 +152,9 @@ def coast(state, commands, durations, limits):
     """
     turned = 0.0
     for i in range(len(durations)):
-        part = 0.25 * durations[i]
-        for _ in range(4):
-            before = state.omega
-            state = driven(state, commands[i, 0], commands[i, 1], limits, part)
-            turned += 0.5 * (before + state.omega) * part
+        parts = max(4, parts_of(durations[i]))
+        part, (v, omega) = durations[i] / parts, (commands[i, 0], commands[i, 1])
+        for _ in range(parts):
+            turned += ramped_both(state, v, omega, limits, part)[1][1]
+            state = driven(state, v, omega, limits, part)
     return state, turned

@@ -21,6 +21,7 @@ STRIDE = 2  # steps to a row after the sample is no longer held
 STEER_GAIN = 3.0  # 1/s, turning rate over the angle to the descent
 BEND_GAIN = 1.5  # 1/rad, by which the speed falls with the angle to the descent
 SLOWEST_NEAR = 0.2  # of the speed, that is kept right beside an obstacle
+NEAR_END = 0.02  # m to the end of the descent, within which the robot turns more slowly
 GENTLE = 0.8  # of the braking limits that a roll-out plans with
 
 
@@ -77,21 +78,29 @@ def is_on_map(field, x, y):
 
 
 @inner
-def follow(cost_to_go, limits, comfort, state, gap):
+def stopping_speed(left, brake, step):
+    """The speed that may be held for ``step`` s so that braking then ends within what is ``left``."""
+    held = brake * step
+    return math.sqrt(held * held + 2.0 * brake * left) - held
+
+
+@inner
+def follow(cost_to_go, limits, comfort, state, gap, step):
     """Speeds that follow the descent of the cost-to-go from a state with clearance ``gap`` (m).
 
     The robot steers by the descent where it will be once its turning rate has changed, and slows
-    down for the bend where it could stop.
+    down for the bend where it could stop. At its end the descent has no direction, and the
+    robot does not turn. The speeds are held for ``step`` s.
     """
     pose, v = state.pose, state.v
     off = turn_to_descent(cost_to_go, pose, 0.5 * v * limits.omega_max / limits.omega_accel)
     bend = turn_to_descent(cost_to_go, pose, 0.5 * v * abs(v) / limits.v_brake)
-    rate = min(STEER_GAIN * abs(off), math.sqrt(2.0 * GENTLE * limits.omega_brake * abs(off)))
-    rate = min(limits.omega_max, rate)
+    rate = min(STEER_GAIN * abs(off), stopping_speed(abs(off), GENTLE * limits.omega_brake, step))
+    left = max(value_at(cost_to_go, pose.x, pose.y), 0.0)
+    rate = min(limits.omega_max, rate) * min(1.0, left / NEAR_END)
     wanted = limits.v_max * max(0.0, 1.0 - BEND_GAIN * max(abs(off), abs(bend)))
     wanted *= min(1.0, max(SLOWEST_NEAR, gap / comfort))
-    left = max(value_at(cost_to_go, pose.x, pose.y), 0.0)
-    v_stop = math.sqrt(2.0 * GENTLE * limits.v_brake * left)
+    v_stop = stopping_speed(left, GENTLE * limits.v_brake, step)
     return min(wanted, v_stop), math.copysign(rate, off)
 
 
@@ -99,7 +108,8 @@ def follow(cost_to_go, limits, comfort, state, gap):
 def tail_speeds(cost_to_go, rules, state, gap, tail):
     """The speeds (v, omega) that a tail asks for at a state with clearance ``gap`` (m)."""
     if tail == FOLLOW:
-        return follow(cost_to_go, rules.limits, rules.config.comfort, state, gap)
+        step = STRIDE * rules.schedule.period  # the longest of a roll-out
+        return follow(cost_to_go, rules.limits, rules.config.comfort, state, gap, step)
     if tail == BACK:
         return rules.limits.v_min, 0.0
     return 0.0, 0.0

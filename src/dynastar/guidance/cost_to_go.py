@@ -17,23 +17,34 @@ Floats = npt.NDArray[np.float64]
 KNOWN = 0.05  # of the weights of the four cells round a point, to read those that are known
 
 
+class End(NamedTuple):
+    """The point (m) from which the values grow, the ``value`` there, and what a metre adds to it."""
+
+    x: float
+    y: float
+    value: float
+    per_metre: float
+
+
 class CostToGo(NamedTuple):
     """The cost-to-go (m): ``value`` is inf where it is not known, ``filled`` finite everywhere.
 
-    (``descent_x``, ``descent_y``) is the unit vector in which it falls at each cell's centre.
+    (``descent_x``, ``descent_y``) is the unit vector in which it falls at each cell's centre. Within a
+    cell of its ``end`` it is a cone.
     """
 
     value: Field
     filled: Floats
     descent_x: Floats
     descent_y: Floats
+    end: End
 
 
 @inner
 def read(cost_to_go, x, y):
     """The value (m) and the descent (x, y) at a point: bilinear between the cells where it is known.
 
-    The descent is nearly a unit vector.
+    The descent is nearly a unit vector, (0, 0) at the end.
     """
     row, column, up, right = locate(cost_to_go.value, x, y)
     total = ux = uy = weight = 0.0
@@ -47,6 +58,12 @@ def read(cost_to_go, x, y):
                 ux += w * cost_to_go.descent_x[r, c]
                 uy += w * cost_to_go.descent_y[r, c]
                 weight += w
+    end = cost_to_go.end
+    ahead_x, ahead_y = end.x - x, end.y - y
+    away = math.sqrt(ahead_x * ahead_x + ahead_y * ahead_y)
+    if away < cost_to_go.value.resolution and weight > KNOWN:
+        unit = 1.0 / max(away, 1e-12)
+        return end.value + away * end.per_metre, ahead_x * unit, ahead_y * unit
     if weight > KNOWN:
         return total / weight, ux, uy
     cell = row + (up > 0.5), column + (right > 0.5)
@@ -67,7 +84,7 @@ def turn_to_descent(cost_to_go, pose, ahead):
 
 
 @njit(cache=True)
-def with_descent(value, filled):
+def with_descent(value, filled, end):
     """The CostToGo of a Field of values, with the unit vector in which they fall at each cell.
 
     Differences are taken to the lower neighbour of each axis, as the marching did, so that walls
@@ -85,7 +102,7 @@ def with_descent(value, filled):
             steep = math.sqrt(gx * gx + gy * gy)
             if 0.0 < steep < np.inf:
                 descent_x[r, c], descent_y[r, c] = gx / steep, gy / steep
-    return CostToGo(value, filled, descent_x, descent_y)
+    return CostToGo(value, filled, descent_x, descent_y, end)
 
 
 @njit(cache=True)

@@ -8,20 +8,22 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.clearance import lower_bounds
-from dynastar.field import Field
-from dynastar.guidance.cost_to_go import CostToGo, trace, value_at, with_descent
-from dynastar.guidance.marching import extend, march, queue_for
+from dynastar.field import Field, blocks
+from dynastar.guidance.cost_to_go import CostToGo, End, trace, value_at, with_descent
+from dynastar.guidance.marching import Seed, extend, march, queue_for
 from dynastar.guidance.seed import nearest_open, path_exit_cell
 from dynastar.guidance.travel_cost import Encounter, add_encounters, travel_cost
 from dynastar.path import Path
 from dynastar.perception.prediction import Prediction
 
 Floats = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 
 FACTOR = 2  # cells of the local map to one of the cost-to-go
-LINE_POINTS = 50  # of the descent from the robot
 KNOWN_BEYOND = 3.0  # m that the cost-to-go is known beyond the robot
 OFF_PATH_COST = 6.0  # extra cost of a metre 1 m or more beside a path that is kept to
+BESIDE = 1  # cells beside the path where the robot may be
+ROUNDING = 1e-6  # m, for points on the border of two cells
 OPEN_WITHIN = 6  # cells to the nearest one where the robot fits, at most
 
 
@@ -73,24 +75,36 @@ class Guidance:
         self._queue = queue_for(self._cells**2)
 
     def update(
-        self, obstacles: Field, target: PathTarget, moving: Prediction, encounter: Encounter
+        self,
+        obstacles: Field,
+        closed: Mask,
+        target: PathTarget,
+        moving: Prediction,
+        encounter: Encounter,
     ) -> Guide:
         """The way to the goal for a robot at the place of ``encounter``.
 
-        ``obstacles`` are distances to the local map's obstacles.
+        ``obstacles`` are distances to the local map's obstacles, ``closed`` (cells, cells) where the
+        planner does not fit, which is closed here as well, except along the path.
         """
         a, x0, y0 = self.resolution, obstacles.x0, obstacles.y0
         metre = travel_cost(obstacles.values, FACTOR, self._margin, self._comfort)
+        off_path = self._off_path(target, x0, y0, BESIDE)
+        metre[blocks(np.logical_and, closed, FACTOR) & off_path] = np.inf
         cost, to_path = Field(metre, x0, y0, a), obstacles
         if target.is_given or self._keep_to_path:
-            to_path = self._distance_to_path(target, x0, y0)
+            off_path = self._off_path(target, x0, y0)
+            to_path = Field(lower_bounds(off_path.view(np.uint8), a), x0, y0, a)
         if target.is_given:
             metre += OFF_PATH_COST * np.minimum(to_path.values, 1.0)
         add_encounters(cost, moving, encounter)
         stop = self._cell_of(encounter, cost)
-        value = march(metre, a, self._seed(target, cost), stop, KNOWN_BEYOND, self._queue)
-        cost_to_go = with_descent(Field(value, x0, y0, a), extend(value, a))
-        line = trace(cost_to_go, encounter.x, encounter.y, LINE_POINTS)
+        seed = self._seed(target, cost)
+        value = march(metre, a, seed, stop, KNOWN_BEYOND, self._queue)
+        x, y = x0 + (seed.column + 0.5) * a + seed.right, y0 + (seed.row + 0.5) * a + seed.up
+        end = End(x, y, seed.value, seed.per_metre)
+        cost_to_go = with_descent(Field(value, x0, y0, a), extend(value, a), end)
+        line = trace(cost_to_go, encounter.x, encounter.y, self._cells)
         return Guide(cost_to_go, to_path, line, reachable=bool(np.isfinite(value[stop])))
 
     def _cell_of(self, encounter: Encounter, cost: Field) -> tuple[int, int]:
@@ -101,19 +115,24 @@ class Guidance:
         )
         return nearest_open(cost.values, row, column, OPEN_WITHIN)
 
-    def _distance_to_path(self, target: PathTarget, x0: float, y0: float) -> Field:
-        """Distances (m) to the part of the path that lies ahead in the local map."""
+    def _off_path(self, target: PathTarget, x0: float, y0: float, beside: int = 0) -> Mask:
+        """The cells that the path ahead does not lead through, nor so many cells ``beside``."""
         a = self.resolution
         end = target.s + min(target.ahead, a * self._cells)
         points = target.path.resampled(target.s, end, a)
         cells = np.round((points - (x0, y0)) / a - 0.5).astype(np.int32)
         off = np.ones((self._cells, self._cells), np.uint8)
-        cv2.polylines(off, [cells], False, 0)
-        return Field(lower_bounds(off, a), x0, y0, a)
+        cv2.polylines(off, [cells], False, 0, 1 + 2 * beside)
+        return off.view(np.bool_)
 
-    def _seed(self, target: PathTarget, cost: Field) -> tuple[int, int, float]:
-        """The cell where the path leaves the local map, or ends, and the length (m) left from there."""
-        path = target.path
+    def _seed(self, target: PathTarget, cost: Field) -> Seed:
+        """Where the path leaves the local map, or ends, and the length (m) left from there."""
+        path, a = target.path, self.resolution
         span = target.s, min(path.length, target.s + target.ahead)
         row, column, s = path_exit_cell(path.points, path.arc, span, cost, OPEN_WITHIN // 2)
-        return row, column, path.length - s
+        x, y = path.at(s)
+        right, up = x - cost.x0 - (column + 0.5) * a, y - cost.y0 - (row + 0.5) * a
+        if max(abs(right), abs(up)) > 0.5 * a + ROUNDING:
+            right = up = 0.0  # the robot does not fit at the point itself, but in a cell near by
+        metre = float(cost.values[row, column])
+        return Seed(row, column, path.length - s, right, up, metre if metre < np.inf else 1.0)

@@ -5,15 +5,31 @@ bucket: values are within ``CHANGE`` of the solution of the upwind scheme.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from dynastar.compiled import njit
+from dynastar.compiled import inner, njit
 
 BUCKETS = 1024
 WIDTH = 0.2  # of a cell's side, the range of values in a bucket
 CHANGE = 1e-6  # m that a value has to fall by to count
+AROUND = (0, 0), (0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1)
 WALL_COST = 40.0  # of a metre through what cannot be driven: values there only lead out of it
+
+
+class Seed(NamedTuple):
+    """Where the front begins: a point ``right`` and ``up`` (m) of the centre of a cell (row, column).
+
+    ``value`` (m) is that of the point, ``per_metre`` by how much it grows in a metre.
+    """
+
+    row: int
+    column: int
+    value: float
+    right: float = 0.0
+    up: float = 0.0
+    per_metre: float = 1.0
 
 
 def queue_for(cells):
@@ -21,9 +37,29 @@ def queue_for(cells):
     return np.empty(BUCKETS, np.int64), np.empty(4 * cells, np.int64), np.empty(4 * cells, np.int64)
 
 
+@inner
+def sow(costs, values, seed, place, resolution, queue):
+    """Write the values of the seed's cell and those round it to ``values`` and ``queue``; returns how many.
+
+    ``place`` is the index of the seed's cell, and by how much those of two rows differ.
+    """
+    (first, columns), (heads, cells, behind), used = place, queue, 0
+    for i, j in AROUND:
+        above, beside = first + i * columns, first + j
+        at = above + j
+        if used == 0 or max(costs[at], costs[above], costs[beside]) < np.inf:
+            away = math.hypot(i * resolution - seed.up, j * resolution - seed.right)
+            more = away * (seed.per_metre if used == 0 else costs[at])
+            bucket = min(int(more / (WIDTH * resolution)), BUCKETS - 1)
+            values[at] = seed.value + more
+            cells[used], behind[used], heads[bucket] = at, heads[bucket], used
+            used += 1
+    return used
+
+
 @njit(cache=True)
 def march(cost, resolution, seed, stop, beyond, queue):
-    """The solution of |grad value| = ``cost`` from ``seed`` (row, column, value), inf where not reached.
+    """The solution of |grad value| = ``cost`` from a ``Seed``, inf where not reached.
 
     Ends ``beyond`` metres after the value at ``stop`` (row, column) is known. The outermost cells are
     closed: their ``cost`` is set to inf. ``queue`` is made by ``queue_for``.
@@ -33,14 +69,13 @@ def march(cost, resolution, seed, stop, beyond, queue):
     cost[:, 0], cost[:, columns - 1] = np.inf, np.inf
     value = np.full(cost.shape, np.inf)
     costs, values = cost.reshape(-1), value.reshape(-1)
-    (seed_row, seed_column, begin), (stop_row, stop_column) = seed, stop
-    row, column = min(max(seed_row, 1), rows - 2), min(max(seed_column, 1), columns - 2)
-    first, target = row * columns + column, stop_row * columns + stop_column
+    row, column = min(max(seed.row, 1), rows - 2), min(max(seed.column, 1), columns - 2)
+    first, target, begin = row * columns + column, stop[0] * columns + stop[1], seed.value
     heads, cells, behind = queue
     heads[:] = -1
     per_metre = 1.0 / (WIDTH * resolution)
-    values[first], cells[0], behind[0], heads[0] = begin, first, -1, 0
-    used, free_head = 1, -1  # entries in use so far, and the first that is free again
+    used = sow(costs, values, seed, (first, columns), resolution, queue)
+    free_head = -1  # of the entries used so far, the first that is free again
     bucket, empty, limit = 0, 0, np.inf
     while empty < BUCKETS and begin + bucket / per_metre <= limit:
         entry = heads[bucket % BUCKETS]

@@ -18,6 +18,7 @@ from dynastar.errors import ConfigError, InputError, MapError, OutOfMap, Scenari
 from dynastar.footprint import Footprint
 from dynastar.geometry import Goal
 from dynastar.grid import OccupancyGrid
+from dynastar.io.examples import example_scenarios
 from dynastar.io.files import MAX_TABLE_BYTES, read_bytes
 from dynastar.io.maps import load_map
 from dynastar.io.scenario_tables import MapTable, PlaceTable, RobotTable, ScenarioTable
@@ -47,12 +48,17 @@ OF_A_PLACE = {
 
 
 def load_scenario(path: str | Path) -> Scenario:
-    """The scenario in a TOML file.
+    """The scenario in a TOML file, or the example of that name, such as ``office``.
 
     A map's name is relative to the file, and may start with ``${DYNASTAR_DATA}``. Raises
     ScenarioError, led by the file's name, for whatever is missing, misspelt or contradictory.
     """
     path = local_path(path, ScenarioError)
+    if path.suffix == "" and len(path.parts) == 1 and not path.is_file():
+        try:
+            path = choose(str(path), example_scenarios(), "scenario")
+        except ConfigError as error:
+            raise ScenarioError(str(error)) from None
     source = _read_toml(path)
     try:
         return read_scenario(source, path.parent, path.stem)

@@ -33,8 +33,8 @@ def scenario_schema() -> Schema:
     speed_limit["properties"]["mask"] = {**map_, "description": "the mask, drawn as a map"}
     robot = _table(RobotTable)
     robot["properties"]["base"] |= {"enum": list(ROBOTS)}
-    robot["properties"]["limits"] = _optional(_table(Limits))
-    sensor = _optional(_table(Lidar))
+    robot["properties"]["limits"] = _of_base(_table(Limits))
+    sensor = _of_base(_table(Lidar))
     sensor["properties"] |= _table(Noise)["properties"]
     mover = _table(MoverTable)
     mover["properties"] = {name.rstrip("_"): of for name, of in mover["properties"].items()}
@@ -87,6 +87,15 @@ def _optional(schema: Schema) -> Schema:
         for name, of in schema["properties"].items()
     }
     return {**schema, "required": [], "properties": properties}
+
+
+def _of_base(schema: Schema) -> Schema:
+    """A table in which what is not given is that of the base robot: ``otherwise`` says so."""
+    schema = _optional(schema)
+    for of in schema["properties"].values():
+        of.pop("default", None)
+        of["otherwise"] = "of the base robot"
+    return schema
 
 
 def _value(hint: Any, field: Field | None = None) -> Schema:

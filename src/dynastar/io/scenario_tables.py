@@ -39,9 +39,7 @@ class ScenarioTable(NamedTuple):
     goal_tolerance: GoalTolerance = DEFAULT.goal_tolerance
     heading_tolerance: HeadingTolerance = DEFAULT.heading_tolerance
     preset: Annotated[Preset, Field("the navigator's settings")] = "default"
-    sensor: Annotated[Any, Field("changes of the robot's lidar, and the errors of its senses")] = (
-        None
-    )
+    sensor: Annotated[Any, Field("changes of the robot's lidar, and sensor errors")] = None
     drive: Drivetrain = Drivetrain()
     odometry: Odometry = Odometry()
     lidar: LidarDriver = LidarDriver()

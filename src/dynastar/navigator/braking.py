@@ -14,6 +14,7 @@ from dynastar.robot import Limits, slew, stopping_time
 Acting = tuple[Pose2D, Twist]
 
 REST = Twist(0.0, 0.0)
+ROUNDING = 1e-9  # m/s and rad/s
 LATENCY_STEP = 0.1  # s between the latencies for which a stop is certified, at most
 V_TOLERANCE = 0.08  # of v_max that the measured speed may be off the commanded one
 OMEGA_TOLERANCE = 0.1  # of omega_max, the same for the turning rate
@@ -30,13 +31,13 @@ class StopProfile:
     def __init__(self, twist: Twist, limits: Limits) -> None:
         self.twist, self.limits = twist, limits
         self.duration = stopping_time(twist, limits)
-        self.elapsed = 0.0
+        self.elapsed: float | None = None  # s, None before it begins
 
-    def next(self, current: Twist, period: float) -> Twist:
-        """The command for the coming period, from the speeds of the moment."""
-        middle = self.elapsed + 0.5 * period
-        self.elapsed += period
-        left = 0.0 if self.elapsed >= self.duration else 1.0 - middle / self.duration
+    def next(self, current: Twist, passed: float, period: float) -> Twist:
+        """The command for the coming period, from the speeds of the moment, ``passed`` s after the last."""
+        self.elapsed = 0.0 if self.elapsed is None else self.elapsed + passed
+        is_last = self.elapsed + period >= self.duration
+        left = 0.0 if is_last else 1.0 - (self.elapsed + 0.5 * period) / self.duration
         return Twist(
             _lead(current.v, self.twist.v * left, self.limits.v_brake, period),
             _lead(current.omega, self.twist.omega * left, self.limits.omega_brake, period),
@@ -69,11 +70,11 @@ class Commands:
         self, limits: Limits, period: float, latency: float, drive_error: float = 0.0
     ) -> None:
         self.limits, self.period, self.latency = limits, period, latency
-        self._faster = 1.0 + drive_error
+        self._drive_error = drive_error
         self._declared = period
         self.check = DriveCheck(limits, period, latency)
         self._sent: list[tuple[float, Twist]] = []
-        self._last = REST
+        self._last, self._noted_at = REST, math.nan  # and the stamp (s) of its state
         self._stop = StopProfile(REST, limits)
 
     def when_one_acts(self, state: RobotState, latency: float | None = None) -> Acting:
@@ -121,7 +122,7 @@ class Commands:
         times in between are LATENCY_STEP apart. Until then the robot follows the commands under way as
         expected, or the oldest or the newest of them alone, faster by the drive's error. The command after
         this one may act at the declared latency. The twist is the greater of the measured one and
-        ``twist``, that from which the command goes on.
+        ``twist``, that from which the command goes on, and the measured one if it is another.
         """
         steps, found = math.ceil(self.latency / LATENCY_STEP - 1e-9), []
         fast = state._replace(twist=self._fast(state.twist))
@@ -131,25 +132,44 @@ class Commands:
             alone = self._sent[:: max(len(self._sent) - 1, 1)] if latency > 0.0 else []
             ways = [self._driven(fast, [self._fast(command)], [latency]) for _, command in alone]
             for pose, (v, omega) in [*ways, expected]:
+                hold = self.period + self.latency - latency
                 greater = Twist(max(v, twist.v, key=abs), max(omega, twist.omega, key=abs))
-                found.append(StopStart(pose, greater, self.period + self.latency - latency))
+                if self._as_told(Twist(v, omega), greater) != greater:
+                    found.append(StopStart(pose, Twist(v, omega), hold))
+                found.append(StopStart(pose, greater, hold))
         return found
+
+    def _as_told(self, measured: Twist, told: Twist) -> Twist:
+        """Each speed as told if the drive's error explains the measured one, else as measured."""
+        error = self._drive_error
+        v = told.v if abs(measured.v - told.v) <= error * abs(told.v) + ROUNDING else measured.v
+        near = abs(measured.omega - told.omega) <= error * abs(told.omega) + ROUNDING
+        return Twist(v, told.omega if near else measured.omega)
 
     def _fast(self, twist: Twist) -> Twist:
         """A twist of a drive that is faster than told by its largest error."""
-        return Twist(self._faster * twist.v, self._faster * twist.omega)
+        faster = 1.0 + self._drive_error
+        return Twist(faster * twist.v, faster * twist.omega)
 
     def send(self, state: RobotState, command: Twist | None) -> Twist:
         """Record a command that has a certified stop; None continues the last one's stop."""
         if command is None:
             return self.brake(state)
-        self._stop = StopProfile(command, self.limits)
+        limits, now = self.limits, self._as_told(self.when_one_acts(state)[1], self._last)
+        v = slew(now.v, command.v, limits.v_accel, limits.v_brake, self.period)
+        omega = slew(now.omega, command.omega, limits.omega_accel, limits.omega_brake, self.period)
+        self._stop = StopProfile(Twist(v, omega), limits)  # a drive may not follow at once
         self._note(state, command)
         return command
 
+    def continue_from(self, other: "Commands") -> None:
+        """Go on from the commands of ``other``, which drove the same robot."""
+        self._sent, self._noted_at = list(other._sent), other._noted_at
+        self._last, self._stop = other._last, other._stop
+
     def forget_times(self) -> None:
         """Drop the stamps of commands, since the clock is another one. The stop is still continued."""
-        self._sent = []
+        self._sent, self._noted_at = [], math.nan
         self.check = DriveCheck(self.limits, self._declared, self.latency)
 
     def brake(self, state: RobotState) -> Twist:
@@ -159,9 +179,11 @@ class Commands:
         """
         twist = self._last
         if is_finite(state):
-            v, omega = self.when_one_acts(state)[1]
+            v, omega = self._as_told(self.when_one_acts(state)[1], self._last)
             twist = Twist(_lesser(v, self._last.v), _lesser(omega, self._last.omega))
-        command = self._stop.next(twist, self.period)
+        passed = state.stamp - self._noted_at
+        passed = passed if 0.0 < passed < math.inf else self.period
+        command = self._stop.next(twist, passed, self.period)
         self._note(state, command)
         return command
 
@@ -169,6 +191,7 @@ class Commands:
         self._last, now = command, state.stamp
         if not math.isfinite(now):
             return
+        self._noted_at = now
         if is_finite(state):
             self.check.note(state, command)
         if self._sent and self._sent[-1][0] == now:

@@ -6,10 +6,12 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 from dynastar.config import Field, checked, choose, self_checking
 from dynastar.dwa.config import DwaConfig, Weights
+from dynastar.navigator.progress import STEP
 from dynastar.perception import LocalMapConfig, PredictionConfig, TrackerConfig
 from dynastar.planning import PlannerConfig
 from dynastar.robot import Robot
 
+SMALLEST_LOCAL_MAP = 2.0  # m, its side
 CELLS = 4  # of the maps, at least, to half a robot's width
 
 
@@ -55,7 +57,7 @@ class NavigatorConfig(NamedTuple):
         float, Field("extra clearance of a plan where there is room", "m", 0.0, 5.0)
     ] = 0.125
     stuck_time: Annotated[
-        float, Field("time without progress until a recovery", "s", 0.5, 120.0)
+        float, Field("time without progress until a recovery", "s", 0.5, 600.0)
     ] = 6.0
     attempts: Annotated[int, Field("recoveries before the mission is given up", "", 0, 100)] = 4
     planner: PlannerConfig = PlannerConfig(exact=True)
@@ -77,15 +79,21 @@ PRESETS: dict[str, NavigatorConfig] = {
 
 
 def fitted(config: NavigatorConfig, robot: Robot) -> NavigatorConfig:
-    """Shrink map cells, at most by half, until half the robot's width (m) spans 4 of them.
+    """The settings as a robot needs them.
 
-    The local map keeps its number of cells. Range noise and rounding close gaps by a cell or two,
-    which a small robot needs.
+    Map cells shrink, at most by half, until half the robot's width (m) spans 4 of them. The local map
+    keeps its number of cells, unless it would be smaller than a local map may be. Range noise and
+    rounding close gaps by a cell or two, which a small robot needs. A slow robot is not stuck in the
+    time in which it can turn round and drive as far as counts for progress.
     """
     share = min(1.0, max(robot.footprint.half_width / CELLS / config.resolution, 0.5))
     local = config.local_map
+    size = max(SMALLEST_LOCAL_MAP, share * local.size)
+    least_time = math.pi / robot.limits.omega_max + STEP / robot.limits.v_max
     return config._replace(
-        resolution=share * config.resolution, local_map=local._replace(size=share * local.size)
+        resolution=share * config.resolution,
+        local_map=local._replace(size=size),
+        stuck_time=max(config.stuck_time, least_time),
     )
 
 

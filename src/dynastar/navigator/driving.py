@@ -2,6 +2,9 @@
 
 import math
 
+import numpy as np
+import numpy.typing as npt
+
 from dynastar.dwa.dwa import Choice, Stops
 from dynastar.dwa.scene import AT_REST, Manoeuvre, Scene
 from dynastar.geometry import Pose2D, Twist
@@ -12,6 +15,8 @@ from dynastar.navigator.sensing import View
 from dynastar.perception import LocalMap
 from dynastar.perception.planning_map import PlanningMap
 from dynastar.robot import Robot
+
+Mask = npt.NDArray[np.bool_]
 
 GIVEN_PATH_WEIGHT = 3.0  # least weight sigma of keeping to a path given by the user
 
@@ -24,7 +29,7 @@ class Driving(Admissibility):
         self.guidance = Guidance(
             len(local_map.states),
             local_map.resolution,
-            robot.footprint.inscribed + self.margin,
+            robot.footprint.half_gap + self.margin,
             config.dwa.comfort,
             keep_to_path=config.dwa.weights.simi > 0.0,
         )
@@ -52,9 +57,18 @@ class Driving(Admissibility):
         return choice
 
     def scene(
-        self, pose: Pose2D, v: float, view: View, target: PathTarget, planning_map: PlanningMap
+        self,
+        pose: Pose2D,
+        v: float,
+        view: View,
+        target: PathTarget,
+        closed: Mask,
+        planning_map: PlanningMap,
     ) -> Scene:
-        """The scene for a robot that is at ``pose`` when a command acts, and drives at ``v`` now (m/s)."""
+        """The scene for a robot that is at ``pose`` when a command acts, and drives at ``v`` now (m/s).
+
+        ``closed`` are the cells of the local map where no plan leads.
+        """
         begin, step, _ = self.times
         encounter = Encounter(
             x=pose.x,
@@ -65,7 +79,9 @@ class Driving(Admissibility):
             step=step,
             discount=math.exp(-begin / self.config.prediction.memory),
         )
-        guide = self.guidance.update(view.distance_to_obstacle, target, view.moving, encounter)
+        guide = self.guidance.update(
+            view.distance_to_obstacle, closed, target, view.moving, encounter
+        )
         self.guide = guide
         cap = self.speed_cap(pose, guide.line, self.guidance.resolution, planning_map)
         return Scene(

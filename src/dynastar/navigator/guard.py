@@ -13,11 +13,11 @@ from dynastar.grid import OccupancyGrid
 from dynastar.navigator.admissibility import Admissibility
 from dynastar.navigator.aligned import turned_pose
 from dynastar.navigator.arrival import GENTLE
-from dynastar.navigator.braking import Commands
+from dynastar.navigator.braking import REST, Commands
 from dynastar.navigator.config import NavigatorConfig, fitted
 from dynastar.navigator.inputs import as_robot
 from dynastar.navigator.sensing import Sensing
-from dynastar.navigator.status import RobotState, slowed
+from dynastar.navigator.status import RobotState, is_finite, slowed
 from dynastar.perception import MovingObstacle
 from dynastar.perception.planning_map import NoMap, PlanningMap
 from dynastar.robot import Robot, poses_along, stopping_time
@@ -26,6 +26,7 @@ from dynastar.scan import LaserScan
 SAME = 1e-9  # m/s and rad/s, by which a command that is passed on may differ
 STEADY = 0.5  # s for which a robot that was held back could hold what it speeds up to
 STOP_POSES = 16  # of the way to a stop
+TOO_SLOW = "slower than the drive can"
 
 
 @dataclass(frozen=True)
@@ -33,8 +34,9 @@ class Guarded:
     """What a guard makes of a command: the ``command`` to drive, and how it differs.
 
     ``changed`` tells whether it is another one than given, ``reason`` why: "acceleration" (the robot
-    needs more time), "speed limit" (of the robot or the map), "no certified stop", "moving obstacle",
-    "unseen space", or what is wrong with the data or the command. It is "" if nothing was changed.
+    needs more time), "speed limit" (of the robot or the map), "slower than the drive can",
+    "no certified stop", "moving obstacle", "unseen space", or what is wrong with the data or the
+    command. It is "" if nothing was changed.
     """
 
     command: Twist
@@ -72,7 +74,7 @@ class Guard:
         self.sensing = Sensing(robot, config, self._planning_map(grid))
         self._check = Admissibility(robot, config)
         self._commands = Commands(robot.limits, config.period, config.latency, config.drive_error)
-        self._acts_at = Pose2D(0.0, 0.0, 0.0)
+        self._acts_at: Pose2D | None = None  # in the map frame, where the last command acts from
         self._cut = False  # whether the last command was held back
         self.last = Guarded(Twist(0.0, 0.0), False)
 
@@ -106,8 +108,13 @@ class Guard:
 
     @property
     def stop(self) -> npt.NDArray[np.float64]:
-        """Poses (n, 3) of the way to rest that is free after the last command: x, y (m), heading (rad)."""
+        """Poses (n, 3) of the way to rest that is free after the last command: x, y (m), heading (rad).
+
+        There are none before the first state with a pose.
+        """
         command = self.last.command
+        if self._acts_at is None:
+            return np.empty((0, 3))
         duration = self.config.period + 0.5 * stopping_time(command, self.robot.limits)
         return poses_along(self._acts_at, command, np.linspace(0.0, duration, STOP_POSES))
 
@@ -126,23 +133,33 @@ class Guard:
         """
         given, wrong = _as_twist(command)
         state, movers, fault = self.sensing.perceive(state, scan, movers)
-        if self.sensing.poses.clock_is_another:  # what was sensed has stamps that are to come
-            self.sensing = Sensing(self.robot, self.config, self._map)
-            self._commands.forget_times()
+        if self.sensing.poses.clock_is_another:
+            self.forget_times()
+        acting = self._commands.when_one_acts(state)
+        if is_finite(state):
+            self._acts_at = turned_pose(acting[0], self._map.grid.frame.yaw)
+        self._commands.period = self.sensing.poses.period
         fault = fault or wrong
         if fault is not None:
             return self._done(given, self._commands.brake(state), fault)
-        self._commands.period = self.sensing.poses.period
         self._check.window.set_period(self.sensing.poses.period)
-        chosen, reason = self._nearest(state, movers, given)
+        chosen, reason = self._nearest(state, acting, movers, given)
         return self._done(given, self._commands.send(state, chosen), reason)
 
+    def forget_times(self) -> None:
+        """Begin anew with another clock: what was sensed is dropped, the stop is still continued."""
+        self.sensing = Sensing(self.robot, self.config, self._map, under_way=True)
+        self._commands.forget_times()
+
     def _nearest(
-        self, state: RobotState, movers: Sequence[MovingObstacle] | None, given: Twist
+        self,
+        state: RobotState,
+        acting: tuple[Pose2D, Twist],
+        movers: Sequence[MovingObstacle] | None,
+        given: Twist,
     ) -> tuple[Twist | None, str]:
         """The admissible command nearest to the one given, None to stop, and why it differs."""
-        acting = pose, measured = self._commands.when_one_acts(state)
-        self._acts_at = turned_pose(pose, self._map.grid.frame.yaw)
+        pose, measured = acting
         twist = self._commands.carried_on(measured)
         stops = self._commands.stops_from(state, acting, twist)
         view = self.sensing.view(state.stamp, movers, self._check.times)
@@ -153,10 +170,16 @@ class Guard:
         self._cut = bool(refusal)
         tried = self.sensing.on_trial(state, command)
         if refusal or tried == command:
-            reason = refusal or ("acceleration" if asked == given else "speed limit")
-        else:
-            reason = "; ".join(self.sensing.feed.hints)
-        return tried, reason
+            return tried, refusal or self._limit(given, asked, command)
+        return tried, "; ".join(self.sensing.feed.hints)
+
+    def _limit(self, given: Twist, asked: Twist, command: Twist | None) -> str:
+        """Which limit a command keeps that is not the one given."""
+        least = (self.robot.limits.v_least, self.robot.limits.omega_least)
+        speeds = zip(asked, command or REST, least, strict=True)
+        if any(driven == 0.0 < abs(wanted) < lowest for wanted, driven, lowest in speeds):
+            return TOO_SLOW
+        return "acceleration" if asked == given else "speed limit"
 
     def _within_limits(self, pose: Pose2D, given: Twist) -> Twist:
         """The command given, on the same arc within the limits of the robot and of the map's zones."""

@@ -45,7 +45,7 @@ class LastTurn:
         self.progress.reset()
 
     @property
-    def _short_by(self) -> float:
+    def short_by(self) -> float:
         """The angle (rad) by which a turn may fall short."""
         return KEPT_WITHIN * self.config.heading_tolerance
 
@@ -62,7 +62,7 @@ class LastTurn:
         ways = [long, short] if long * self._long_way > 0.0 else [short, long]
         at = state_at(*pose, 0.0, 0.0).pose
         for way in ways:
-            if has_room_to_turn(scene, rules, at, at, way, (self._spare, self._short_by)):
+            if has_room_to_turn(scene, rules, at, at, way, (self._spare, self.short_by)):
                 self._long_way = math.copysign(1.0, long) if way == long else 0.0
                 self._spare = 0.0
                 return way
@@ -75,7 +75,7 @@ class LastTurn:
         self._looked_at = now
         at, reach = state_at(*pose, 0.0, 0.0).pose, self.config.goal_tolerance
         for spare in SPARES:
-            need = spare, self._short_by
+            need = spare, self.short_by
             found, x, y = place_to_turn(scene, rules, at, tuple(goal), reach, need)
             self.place, self._spare = ((x, y) if found else None), ENOUGH * spare
             if found:
@@ -92,15 +92,25 @@ class LastTurn:
             mission.block(f"gave up: the goal's heading cannot be reached{why}")
 
 
-def turn_by(angle: float, twist: Twist, limits: Limits, period: float) -> Twist:
+def turn_by(angle: float, short_by: float, twist: Twist, limits: Limits, period: float) -> Twist:
     """The command that turns on the spot by an angle (rad), slow enough to stop there.
 
     The rate falls in proportion to the angle that is left: a delay of a period or two that is not
-    declared, or a drive that turns too fast, does not make the robot swing.
+    declared, or a drive that turns too fast, does not make the robot swing. A drive that cannot turn so
+    slowly stops where that ends within ``short_by`` (rad), or nearer than after one more period.
     """
     rate = math.sqrt(2.0 * GENTLE * limits.omega_brake * abs(angle))
     rate = math.copysign(min(limits.omega_max, rate, abs(angle) * STEADY / period), angle)
     omega = slew(twist.omega, rate, limits.omega_accel, limits.omega_brake, period)
     if abs(omega) < limits.omega_least:
-        omega = math.copysign(limits.omega_least, angle)
+        omega, now = math.copysign(limits.omega_least, angle), twist.omega
+        after = slew(now, omega, limits.omega_accel, limits.omega_brake, period)
+        turned = 0.5 * (now + after) * period + _stop(after, limits)
+        if abs(angle - _stop(now, limits)) <= max(short_by, abs(angle - turned)):
+            omega = 0.0
     return Twist(slew(twist.v, 0.0, limits.v_accel, limits.v_brake, period), omega)
+
+
+def _stop(omega: float, limits: Limits) -> float:
+    """The angle (rad) that a stop turns by."""
+    return 0.5 * omega * abs(omega) / limits.omega_brake

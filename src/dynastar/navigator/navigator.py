@@ -10,7 +10,7 @@ from dynastar.dwa.dwa import Choice
 from dynastar.geometry import Goal, Pose2D, Twist, as_goals
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator.aligned import turned_disc, turned_goal
-from dynastar.navigator.arrival import has_arrived, is_near
+from dynastar.navigator.arrival import has_arrived, stays_near
 from dynastar.navigator.braking import Commands
 from dynastar.navigator.config import NavigatorConfig, fitted, margin_of
 from dynastar.navigator.driving import Driving
@@ -18,14 +18,14 @@ from dynastar.navigator.inputs import as_given_path, as_robot
 from dynastar.navigator.last_turn import LastTurn, turn_by
 from dynastar.navigator.mission import Mission
 from dynastar.navigator.planners import Planners, radii_of
-from dynastar.navigator.progress import Progress
+from dynastar.navigator.recovery import Recovery
 from dynastar.navigator.replanning import Route
 from dynastar.navigator.sensing import Sensing
 from dynastar.navigator.status import RobotState, Status
 from dynastar.path import Path
 from dynastar.perception import MovingObstacle, PlanningMap
 from dynastar.planning import Planner
-from dynastar.robot import Robot, stopping_time
+from dynastar.robot import Robot
 from dynastar.scan import LaserScan
 
 MOST_CELLS = 10_000_000  # of a planning map whose cells are halved: it takes 2 s to plan on anew
@@ -54,10 +54,12 @@ class Navigator:
         self.robot, self.config, self._grid = robot, config, grid
         planning_map = PlanningMap(grid, config.resolution, config.unknown)
         self.sensing = Sensing(robot, config, planning_map)
-        self.progress, self.mission = Progress(config.stuck_time), Mission()
+        self.mission = Mission()
         self._last_turn, self._planner = LastTurn(config), planner
         self._commands = Commands(robot.limits, config.period, config.latency, config.drive_error)
-        self.route = Route(self._planners_on(planning_map), config)
+        self.route = Route(self._planners_on(planning_map), config, robot.limits)
+        self._recovery = Recovery(self.mission, self.route, robot.limits, config)
+        self.progress = self._recovery.progress
         self.retune(config.dwa)
 
     def __repr__(self) -> str:
@@ -149,6 +151,14 @@ class Navigator:
         self.planners.forget()
         self.sensing.forget()
 
+    def continue_from(self, other: "Navigator") -> None:
+        """Take over stop and mission, unless that is blocked, of another navigator of the same robot."""
+        self.sensing = Sensing(self.robot, self.config, self.planning_map, under_way=True)
+        self.retune(self.config.dwa)
+        self._commands.continue_from(other._commands)
+        if other.mission.goals and not other.mission.is_blocked:
+            self._set_out(other.mission.goals, "other settings", other.route.given)
+
     def _planners_on(self, planning_map: PlanningMap) -> Planners:
         radii = radii_of(self.robot.footprint, margin_of(self.robot, self.config))
         return Planners(planning_map, self.config, radii, self._planner)
@@ -190,9 +200,9 @@ class Navigator:
         self._last_turn.reset()
         self.driving.forget_manoeuvre()
 
-    def _begin_clock_anew(self) -> None:
-        """Drop all that has stamps of another clock; goals and path stay."""
-        self.sensing = Sensing(self.robot, self.config, self.planning_map)
+    def forget_times(self) -> None:
+        """Drop all that has stamps, as the clock is another one: goals, path and certified stop stay."""
+        self.sensing = Sensing(self.robot, self.config, self.planning_map, under_way=True)
         self._commands.forget_times()
         self.retune(self.config.dwa)
         self.route.forget_times()
@@ -213,13 +223,13 @@ class Navigator:
         last_resort = self.config.unseen_speed > 0.0 and self.progress.rounds > 1
         state, movers, fault = self.sensing.perceive(state, scan, movers, last_resort)
         if self.sensing.poses.clock_is_another:
-            self._begin_clock_anew()
+            self.forget_times()
+        self._commands.period = self.sensing.poses.period
         if fault is not None:
             mission.lose(fault)
             return self._commands.brake(state)
         if mission.regain():
             self.progress.restart(state.stamp)
-        self._commands.period = self.sensing.poses.period
         self.driving.window.set_period(self.sensing.poses.period)
         changed = self.planners.mark(self.planning_map.merge(self.sensing.local_map))
         acting = self._commands.when_one_acts(state)
@@ -258,8 +268,8 @@ class Navigator:
         movers: Sequence[MovingObstacle] | None,
     ) -> Twist | None:
         """The command, by the dynamic window or to turn to the goal's heading; None to stop."""
-        if self.progress.stops_until is not None:
-            self._recover(state, self.progress.stops_until)
+        if self._recovery.is_stopping:
+            self._recovery.go_on(state, self._refine)
             return None
         pose, measured = acting
         twist = self._commands.carried_on(measured)
@@ -267,57 +277,24 @@ class Navigator:
         driving = self.driving
         view = self.sensing.view(state.stamp, movers, driving.times)
         target = self._last_turn.target(pose) or self.route.target(driving.lookahead)
-        scene = driving.scene(pose, state.twist.v, view, target, self.planning_map)
-        goal = self._goal
-        at_goal = self.route.path is not None and is_near(goal, pose, self.config)
-        if at_goal and goal.heading is not None:
+        closed = self.planners.closed_under(self.sensing.local_map)
+        scene = driving.scene(pose, state.twist.v, view, target, closed, self.planning_map)
+        goal, limits = self._goal, self.robot.limits
+        is_there = stays_near(goal, pose, acting, limits, self.config)
+        if goal.heading is not None and is_there and self.route.path is not None:
             rules, turn = driving.window.rules, self._last_turn
             angle = turn.angle(scene, rules, pose, goal.heading)
             turn.judge(self.mission, state.stamp, angle)
             if angle is not None:
                 driving.forget_manoeuvre()
-                command = turn_by(angle, twist, self.robot.limits, self.sensing.poses.period)
+                period = self.sensing.poses.period
+                command = turn_by(angle, turn.short_by, twist, limits, period)
                 return command if driving.window.admits(scene.around, stops, command) else None
             if not turn.finds_place(scene, rules, pose, goal, state.stamp):
                 return None
         choice = self._choice = driving.choose(pose, twist, scene, stops)
-        self._judge(state, choice, len(view.moving.obstacles) > 0)
-        goes_on = self.mission.under_way and self.progress.stops_until is None
+        assert driving.guide is not None
+        self.mission.say_driving(choice, len(view.moving.obstacles) > 0, self.route.waits_because)
+        self._recovery.judge(state, driving.guide.cost_at)
+        goes_on = self.mission.under_way and not self._recovery.is_stopping
         return choice.command if goes_on else None
-
-    def _judge(self, state: RobotState, choice: Choice, moving: bool) -> None:
-        """Say what is going on, and stop to plan anew where there has been no progress for long."""
-        mission, route = self.mission, self.route
-        mission.say_driving(choice, moving, route.waits_because)
-        here = (state.pose.x, state.pose.y)
-        if route.waits_for_someone(here):
-            mission.say("waiting", "a moving obstacle is at the goal")
-            self.progress.restart(state.stamp)
-            return
-        attempts = self.config.attempts
-        if route.path is None and self.progress.pathless_rounds >= attempts:
-            mission.block(f"no way is left: {route.error}", route.error)
-            return
-        assert self.driving.guide is not None
-        cost_at = None if route.path is None else self.driving.guide.cost_at
-        if not self.progress.stuck(state.stamp, here, cost_at):
-            return
-        if self.progress.rounds > attempts:
-            mission.block(f"gave up: no progress after {attempts} recoveries")
-            return
-        self.progress.stops_until = (
-            state.stamp + self.config.latency + stopping_time(state.twist, self.robot.limits)
-        )
-
-    def _recover(self, state: RobotState, stops_until: float) -> None:
-        """Plan anew once the robot has come to rest: with finer cells of a large map that takes seconds."""
-        self.mission.say("recovering", "no progress")
-        if state.stamp < stops_until:
-            return
-        route, has_path = self.route, self.route.path is not None
-        if not route.is_at_obstructed_goal:  # there it sees what is in the way
-            route.drop()
-        if not has_path:
-            self._refine()
-        self.progress.restart(state.stamp)
-        self.mission.recover(state.stamp, "no progress: plan anew")

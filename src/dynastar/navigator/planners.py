@@ -10,9 +10,11 @@ from dynastar.footprint import Footprint
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.waiting_place import waiting_place, ways_to
+from dynastar.perception import LocalMap
 from dynastar.perception.planning_map import Patch, PlanningMap
 from dynastar.planning import GridPlanner, Plan, Planner, plan_by
 
+Mask = npt.NDArray[np.bool_]
 Point = tuple[float, float]
 
 PLAN_MARGIN = 0.03  # m beyond the footprint that a plan keeps clear, at least
@@ -24,7 +26,7 @@ def radii_of(footprint: Footprint, margin: float) -> tuple[float, float]:
 
     ``margin`` (m) is that of the footprint from obstacles.
     """
-    return footprint.circumscribed + margin, footprint.inscribed + max(margin, PLAN_MARGIN)
+    return footprint.circumscribed + margin, footprint.half_gap + max(margin, PLAN_MARGIN)
 
 
 class Planners:
@@ -110,6 +112,10 @@ class Planners:
     def blocked_at(self, points: npt.NDArray[np.float64]) -> float | None:
         """Metres along a polyline (n, 2) to where even the tightest planner could not go."""
         return self.by_width[-1].path_blocked_at(points)
+
+    def closed_under(self, local_map: LocalMap) -> Mask:
+        """Cells (n, n) of a local map where even the tightest planner does not fit."""
+        return ~self.planning_map.under(self.by_width[-1].free, local_map, outside=False)
 
     def with_explored(self, plan: Plan) -> Plan:
         """The last plan with the cells that its search expanded; 20 ms on a map of 4 million cells."""

@@ -9,6 +9,7 @@ from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.status import RobotState, is_finite
 from dynastar.robot import Limits
 
+AT_REST = 0.01  # m/s and rad/s up to which the robot is at rest
 FARTHEST = 1e6  # m from the map's origin, where positions still tell cells apart
 KEPT_FOR = 2.0  # s, no less than any scan_age
 OTHER_CLOCK = 1.0  # s of rising stamps after time went back, from which on that is a clock anew
@@ -25,6 +26,7 @@ class PoseHistory:
     def __init__(self, limits: Limits, config: NavigatorConfig) -> None:
         self._limits, self._config = limits, config
         self._states: deque[RobotState] = deque()
+        self._was_there = False  # before the oldest state that is kept
         self._back: tuple[float, float] | None = None  # first and last stamp since time went back
 
     def fault(self, state: RobotState) -> str | None:
@@ -34,7 +36,7 @@ class PoseHistory:
                 "the robot's state is not finite: expected a stamp, a pose and a twist of numbers"
             )
         x, y, theta = state.pose
-        if max(abs(x), abs(y), abs(theta)) > FARTHEST:
+        if max(math.hypot(x, y) / math.sqrt(2.0), abs(theta)) > FARTHEST:  # at any yaw of the map
             return f"the robot's pose is ({x:g}, {y:g}, {theta:g}): expected within 1e6 m and rad"
         if self._states and state.stamp < self._states[-1].stamp:
             begun, last = self._back or (state.stamp, state.stamp)
@@ -51,8 +53,11 @@ class PoseHistory:
     def add(self, state: RobotState) -> bool:
         """Keep a state; True if the pose jumped, which drops those before (the map was corrected)."""
         jumped = bool(self._states) and self._is_jump(self._states[-1], state)
+        if not self._states:
+            self._was_there = max(map(abs, state.twist)) <= AT_REST
         if jumped:
             self._states.clear()
+            self._was_there = False
         elif self._states and self._states[-1].stamp == state.stamp:
             self._states.pop()
         self._states.append(state)
@@ -80,8 +85,11 @@ class PoseHistory:
         away = math.hypot(last.pose.x - first.pose.x, last.pose.y - first.pose.y)
         return away, driven, last.stamp - first.stamp
 
-    def pose_at(self, stamp: float) -> Pose2D:
-        """The pose at a time (s), interpolated between the states that are kept."""
+    def pose_at(self, stamp: float) -> Pose2D | None:
+        """The pose at a time (s), interpolated between the states that are kept; None if it is not known.
+
+        Before the first state it was the same if the robot was at rest then. Before a jump it is not known.
+        """
         after = self._states[-1]
         for before in reversed(self._states):
             if before.stamp <= stamp:
@@ -89,7 +97,7 @@ class PoseHistory:
                 fraction = min(1.0, (stamp - before.stamp) / span) if span > 0.0 else 0.0
                 return interpolate(before.pose, after.pose, fraction)
             after = before
-        return self._states[0].pose
+        return self._states[0].pose if self._was_there else None
 
     def _is_jump(self, last: RobotState, state: RobotState) -> bool:
         """Whether the pose moved further than the robot can have."""

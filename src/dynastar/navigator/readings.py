@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.navigator.config import NavigatorConfig
 from dynastar.robot import Robot
 from dynastar.scan import LaserScan
 
@@ -25,10 +24,9 @@ class Readings:
     ``hints`` name what has been odd about the readings for some seconds.
     """
 
-    def __init__(self, robot: Robot, config: NavigatorConfig) -> None:
+    def __init__(self, robot: Robot) -> None:
         self.robot = robot
         self.hints: list[str] = []
-        self._margin = config.range_error + 2.0 * config.pose_error  # as round the footprint
         self._since: dict[str, float] = {}  # stamp (s) since which a kind of reading is there
 
     def interpreted(self, scan: LaserScan) -> LaserScan:
@@ -52,12 +50,12 @@ class Readings:
     def _own(self, scan: LaserScan, readings: Floats) -> npt.NDArray[np.int64]:
         """The indices of the beams that end within the robot's own footprint."""
         shape, mount = self.robot.footprint, scan.mount
-        reach = shape.circumscribed + self._margin + math.hypot(mount.x, mount.y)
+        reach = shape.circumscribed + math.hypot(mount.x, mount.y)
         near = np.flatnonzero(readings < reach)
         angles = mount.theta + scan.angle_min + scan.angle_increment * near
         x = mount.x + readings[near] * np.cos(angles)
         y = mount.y + readings[near] * np.sin(angles)
-        return near[shape.covers(np.column_stack([x, y]), self._margin)]
+        return near[shape.covers(np.column_stack([x, y]))]
 
     def _find_odd(self, scan: LaserScan, unknown: Mask, own: int) -> None:
         """Bring ``hints`` up to date: readings without information, and of the robot itself."""
@@ -68,7 +66,7 @@ class Readings:
             if count >= MANY * n:
                 found["unknown"] = (
                     f"{_percent(count, n)} of the lidar's readings are {value:g}: if the driver "
-                    f"writes that for no return, add it to lidar.nothing"
+                    f"writes that for no return, declare it in sensor.nothing"
                 )
         if own:
             found["own"] = (

@@ -9,12 +9,14 @@ from dynastar.errors import GoalObstructed, NoPath, PlanningError
 from dynastar.geometry import Goal, Pose2D
 from dynastar.guidance import PathTarget
 from dynastar.navigator.aligned import turned, turned_path, turned_pose
+from dynastar.navigator.arrival import rest_place
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.planners import Planners
 from dynastar.navigator.status import RobotState
 from dynastar.navigator.waiting_place import WAIT_WITHIN
 from dynastar.path import Path
 from dynastar.planning import Plan
+from dynastar.robot import Limits
 
 REPLAN_PERIOD = 1.0  # s between two plans at the least
 REVIEW_PERIOD = 5.0  # s after which a better plan is looked for
@@ -47,8 +49,8 @@ class Route:
     in the map frame.
     """
 
-    def __init__(self, planners: Planners, config: NavigatorConfig) -> None:
-        self.planners, self.config = planners, config
+    def __init__(self, planners: Planners, config: NavigatorConfig, limits: Limits) -> None:
+        self.planners, self.config, self._limits = planners, config, limits
         self.plan: Plan | None = None
         self.plan_id, self.reason, self.replans = 0, "", 0
         self._stand = Path(np.zeros((1, 2)))  # where the robot waits while there is no path
@@ -229,6 +231,6 @@ class Route:
         if not (sensed or isinstance(error, GoalObstructed)):
             return RouteEvent(blocked=str(error), error=error)
         if self.path is not None or self.error is None:
-            self._stand = Path(np.array([state.pose[:2]]))
+            self._stand = Path(np.array([rest_place(state.pose, state.twist, self._limits)]))
         self.path, self.error = None, error
         return KEPT

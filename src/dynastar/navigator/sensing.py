@@ -27,8 +27,8 @@ from dynastar.scan import LaserScan, as_scans
 Mask = npt.NDArray[np.bool_]
 
 AT_PLACE = 0.5  # m from a moving obstacle, up to which it is at a place
-TRIAL = Twist(0.1, 0.3)  # speeds up to which the robot tries whether a lidar is really frozen
-SEEN_NOW = 0.15  # s that a cell counts as in view after it was seen
+TRIAL = Twist(0.1, 0.3)  # speeds up to which the robot drives to see whether a lidar sees again
+SEEN_NOW = 0.15  # s before the newest scan, since which a cell that was seen counts as in view
 
 
 class View(NamedTuple):
@@ -46,20 +46,31 @@ class View(NamedTuple):
 
 
 class Sensing:
-    """Keep the local map and the tracks up to date, and make a view of them."""
+    """Keep the local map and the tracks up to date, and make a view of them.
 
-    def __init__(self, robot: Robot, config: NavigatorConfig, planning_map: PlanningMap) -> None:
+    At the start the disc round the robot is taken as free; ``under_way`` it is only what the robot fills
+    at every heading.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        config: NavigatorConfig,
+        planning_map: PlanningMap,
+        under_way: bool = False,
+    ) -> None:
         self.robot, self.config, self.planning_map = robot, config, planning_map
         self._keep(LocalMap(config.local_map, *planning_map.lattice))
         self.tracker = Tracker(config.tracker)
         self.poses, self.feed = PoseHistory(robot.limits, config), ScanFeed(robot, config)
-        self._at_start = True  # until the first scan
+        self._is_new = True  # until the first scan
+        self._start_radius = robot.footprint.inscribed if under_way else self._own_radius
         self.trusts_map = False  # as of the last update
 
     def on_map(self, planning_map: PlanningMap) -> "Sensing":
         """The sensing on another map: itself with what it has seen, unless the map has another yaw."""
         if planning_map.grid.frame.yaw != self.planning_map.grid.frame.yaw:
-            return Sensing(self.robot, self.config, planning_map)
+            return Sensing(self.robot, self.config, planning_map, under_way=True)
         self.planning_map = planning_map
         if not self.local_map.lies_on(*planning_map.lattice):
             self._keep(self.local_map.moved_onto(*planning_map.lattice))
@@ -94,13 +105,13 @@ class Sensing:
         return state, moving, self.update(state, as_scans(scan), trusts_map) or wrong
 
     def on_trial(self, state: RobotState, command: Twist | None) -> Twist | None:
-        """The command, slowed while the robot tries whether a lidar is really frozen.
+        """The command, slowed while the robot tries whether a lidar tells nothing new for good.
 
         A faster robot brakes when its data are too old. Both speeds stay such that the drive follows them.
         """
         limits = self.robot.limits
         is_fast = abs(state.twist.v) >= 2.0 * max(TRIAL.v, limits.v_least)
-        if command is None or is_fast or not self.feed.is_frozen:
+        if command is None or is_fast or not self.feed.in_trouble:
             return command
         v, omega = abs(command.v), abs(command.omega)
         least = max(_share(limits.v_least, v), _share(limits.omega_least, omega))
@@ -127,13 +138,13 @@ class Sensing:
         accepted, fault = self.feed.accept(scans, state, self.poses.pose_at)
         for scan in accepted:
             self._add(scan)
-        if not self._at_start:
+        if not self._is_new:
             self.local_map.keep_free((x, y, self._own_radius), now)
-        if self._at_start or jumped or self.trusts_map:  # wherever that is, the robot stands there
-            radius = self._own_radius if self._at_start else self.robot.footprint.inscribed
+        if self._is_new or jumped or self.trusts_map:  # wherever that is, the robot stands there
+            radius = self._start_radius if self._is_new else self.robot.footprint.inscribed
             mapped = self._under(self.planning_map.grid.occupied, outside=True)
             self.local_map.assume_free((x, y, radius), now, mapped)
-        self._at_start = self._at_start and self.feed.newest == -math.inf
+        self._is_new = self._is_new and self.feed.newest == -math.inf
         self.planning_map.place_robot(x, y, self.robot.footprint.circumscribed)
         barred = self._under(self.planning_map.barred, outside=False)
         trusted = ~self._under(self.planning_map.prior, outside=True) if self.trusts_map else None
@@ -153,9 +164,11 @@ class Sensing:
         local = self.local_map
         resolution, x0, y0 = local.frame
         occupied = self.planning_map.occupied_under(local)
-        seen = local.free_at >= now - SEEN_NOW
+        seen = local.free_at >= self.feed.newest - SEEN_NOW
         obstacles = lower_bounds((~occupied).view(np.uint8), resolution)
-        hidden = self._hidden.update((local.row0, local.column0), seen, occupied, now)
+        as_of = min(self.feed.newest, now)
+        hidden = self._hidden.update((local.row0, local.column0), seen, occupied, as_of)
+        hidden = hidden.later(now - as_of)
         if self.trusts_map:
             hidden = hidden._replace(speed=0.0)  # the robot drives into unseen space
         return View(
@@ -200,14 +213,15 @@ class Sensing:
 
     def _add(self, scan: LaserScan) -> None:
         """Place a scan by its stamp; tracks first, then what does not move into the local map."""
-        config = self.config
-        sensor: Pose2D = compose(self.poses.pose_at(scan.stamp), scan.mount)
+        config, pose = self.config, self.poses.pose_at(scan.stamp)
+        assert pose is not None
+        sensor: Pose2D = compose(pose, scan.mount)
         errors = config.range_error, config.heading_error
         view = placed(scan, sensor, errors, config.local_map.narrowest)
         moving, left = self.tracker.update(view, self.planning_map.known)
         for disc in left:
             self.local_map.erase(disc)
-        self.local_map.see(view, moving)
+        self.local_map.see(view, moving, self.feed.number_of(scan))
 
 
 def _share(least: float, speed: float) -> float:

@@ -28,6 +28,13 @@ class Hidden(NamedTuple):
     distance: Field
     speed: float
 
+    def later(self, seconds: float) -> "Hidden":
+        """The same when the bodies may have moved for some seconds more."""
+        if seconds <= 0.0:
+            return self
+        nearer = self.distance.values - np.float32(self.speed * seconds)
+        return self._replace(distance=self.distance._replace(values=nearer))
+
 
 class HiddenSpace:
     """Keeps until when every cell of the local map is cleared of unseen bodies.

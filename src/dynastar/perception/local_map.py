@@ -19,6 +19,8 @@ Mask = npt.NDArray[np.bool_]
 UNSEEN, SEEN_FREE, SEEN_OCCUPIED = np.arange(3, dtype=np.uint8)  # states of a cell
 OFF_CENTRE = 1.0 / 12.0  # of the window's side, by which the robot may be off its middle
 SAME = 1e-3  # cells, by which lattices may be apart that count as one
+ALL = slice(None), slice(None)
+LIDARS = 8  # bits of ``hit_by``
 ROUNDED = 1e-6  # relative error of a resolution that was a float32, as in ROS messages
 
 
@@ -39,6 +41,10 @@ class LocalMap:
 
     The window lies on a lattice of cells of ``resolution`` (m), one of which has its low corner at
     ``corner`` (x, y). ``boxes`` are those of the hits in the cells that are occupied.
+
+    ``hit_by`` has a bit for each lidar, set by its hits and cleared where it sees the cell free. A cell
+    with such a bit is occupied until the hit is forgotten: what one lidar sees, another that looks over
+    it does not clear.
     """
 
     def __init__(
@@ -52,6 +58,7 @@ class LocalMap:
         self.row0 = self.column0 = 0  # lattice index of cell [0, 0], even
         self.free_at = np.full((n, n), kernels.NEVER)
         self.hit_at = np.full((n, n), kernels.NEVER)
+        self.hit_by = np.zeros((n, n), np.uint8)
         self.boxes = np.full((n, n), whole_cell(resolution))
         self.states = np.zeros((n, n), np.uint8)
         self.open = np.zeros((n, n), np.bool_)
@@ -96,8 +103,9 @@ class LocalMap:
     def _move_hits(self, other: "LocalMap") -> None:
         """Stamp the hits into the cells of another window that their boxes overlap."""
         a, (x0, y0) = other.resolution, self.origin
-        rows, columns = np.nonzero(self.hit_at > kernels.NEVER)
+        rows, columns = np.nonzero(self.hit_by)
         boxes, stamps = self.boxes[rows, columns], self.hit_at[rows, columns]
+        lidars = self.hit_by[rows, columns]
         x, y = x0 + (columns + 0.5) * self.resolution, y0 + (rows + 0.5) * self.resolution
         within = (
             0.5 * self.resolution - SAME * a
@@ -112,11 +120,13 @@ class LocalMap:
             inside &= (column >= 0) & (column < len(other.states))
             at = row[inside].astype(np.int64), column[inside].astype(np.int64)
             np.maximum.at(other.hit_at, at, stamps[inside])
+            np.bitwise_or.at(other.hit_by, at, lidars[inside])
 
     def forget(self) -> None:
         """Mark all of the window as unseen."""
         self.free_at.fill(kernels.NEVER)
         self.hit_at.fill(kernels.NEVER)
+        self.hit_by.fill(0)
 
     def follow(self, x: float, y: float) -> None:
         """Keep (x, y) near the middle of the window; cells that leave it are forgotten."""
@@ -130,6 +140,7 @@ class LocalMap:
         rows, columns = np.arange(n) + up, np.arange(n) + right
         self.free_at = picked(self.free_at, rows, columns, kernels.NEVER)
         self.hit_at = picked(self.hit_at, rows, columns, kernels.NEVER)
+        self.hit_by = picked(self.hit_by, rows, columns, 0)
         self.boxes = picked(self.boxes, rows, columns, whole_cell(a))
         self.row0, self.column0 = self.row0 + up, self.column0 + right
 
@@ -137,7 +148,7 @@ class LocalMap:
         """Take a disc round the robot as free, but for hits and the cells ``mapped`` (n, n)."""
         box, inside = self._cells_in(disc)
         free_at = self.free_at[box]
-        free = inside & ~mapped[box] & (self.hit_at[box] < now - self.config.memory)
+        free = inside & ~mapped[box] & ~self._occupied(now, box)
         free_at[free] = np.maximum(free_at[free], now)
 
     def keep_free(self, disc: Disc, now: float) -> None:
@@ -145,19 +156,28 @@ class LocalMap:
         box, inside = self._cells_in(disc)
         free_at = self.free_at[box]
         known = (free_at < now) & (free_at >= self._updated - self.config.memory)
-        free_at[inside & known & (self.hit_at[box] < free_at)] = now
+        free_at[inside & known & ~self._occupied(now, box)] = now
 
-    def see(self, scan: PlacedScan, moving: Mask) -> None:
-        """Mark what a scan shows; ``moving`` (k,) are the points not to be marked as hits."""
-        now = scan.sensor.stamp
-        kernels.mark_free(self.free_at, self.frame, scan.free, scan.sensor)
-        layers, times = (self.free_at, self.hit_at, self.boxes), (now, now - self.config.memory)
-        kernels.mark_hits(layers, self.frame, scan.points, moving, times)
+    def see(self, scan: PlacedScan, moving: Mask, lidar: int = 0) -> None:
+        """Mark what a scan shows; ``moving`` (k,) are the points not to be marked as hits.
+
+        ``lidar`` is the number of the lidar, of which up to LIDARS are told apart.
+        """
+        bit, now = 1 << lidar % LIDARS, scan.sensor.stamp
+        kernels.mark_free((self.free_at, self.hit_by), self.frame, scan.free, scan.sensor, bit)
+        layers = self.free_at, self.hit_at, self.hit_by, self.boxes
+        times = now, now - self.config.memory
+        kernels.mark_hits(layers, self.frame, scan.points, moving, times, bit)
+
+    def _occupied(self, now: float, box: tuple[slice, slice] = ALL) -> Mask:
+        """The cells of a box with a hit that is not forgotten."""
+        return (self.hit_by[box] > 0) & (self.hit_at[box] >= now - self.config.memory)
 
     def erase(self, disc: Disc) -> None:
         """Forget the hits in a disc: an obstacle there has turned out to move."""
         box, inside = self._cells_in(disc)
         self.hit_at[box][inside] = kernels.NEVER
+        self.hit_by[box][inside] = 0
 
     def _cells_in(self, disc: Disc) -> tuple[tuple[slice, slice], Mask]:
         """A box of cells round a disc, and which of these have their centre in it."""
@@ -178,9 +198,8 @@ class LocalMap:
         open while unseen.
         """
         self._updated = now
-        free_at, hit_at, horizon = self.free_at, self.hit_at, now - self.config.memory
-        free = (free_at > hit_at) & (free_at >= horizon)
-        occupied = (hit_at >= free_at) & (hit_at >= horizon)
+        occupied = self._occupied(now)
+        free = ~occupied & (self.free_at >= now - self.config.memory)
         self.states = free * SEEN_FREE + occupied * SEEN_OCCUPIED
         self.open = free & ~barred
         if trusted is not None:

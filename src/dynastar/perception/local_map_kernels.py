@@ -50,12 +50,14 @@ def crossings(gaps, first, increment, side):
 
 
 @njit(cache=True)
-def mark_free(free_at, frame, gaps, sensor):
-    """Stamp the scan's time into ``free_at`` for every cell whose centre lies in observed-free space.
+def mark_free(layers, frame, gaps, sensor, lidar):
+    """Stamp the scan's time into every cell whose centre lies in observed-free space.
 
-    A newer stamp stays. ``frame`` is the window's (resolution, x0, y0), ``gaps`` (n,) are the ranges
-    (m) from one beam to the next, the last one to the first beam. ``sensor`` is a Sensor.
+    A newer stamp stays. ``layers`` are free_at and hit_by, of which the hits by this ``lidar`` (a bit) are
+    cleared. ``frame`` is the window's (resolution, x0, y0), ``gaps`` (n,) are the ranges (m) from one beam
+    to the next, the last one to the first beam. ``sensor`` is a Sensor.
     """
+    free_at, hit_by = layers
     resolution, x0, y0 = frame
     x, y, first = sensor.x, sensor.y, sensor.theta + sensor.angle_min
     far = gaps.max()
@@ -70,7 +72,7 @@ def mark_free(free_at, frame, gaps, sensor):
         high = min(free_at.shape[1] - 1, int(math.floor((x + half - x0) / resolution)))
         ends, squares = above if dy > 0.0 else below
         height = max(abs(dy), 1e-9)
-        cells, k, end = free_at[row], 0, ends[0] * height
+        cells, hits, k, end = free_at[row], hit_by[row], 0, ends[0] * height
         for column in range(low, high + 1):
             dx = x0 + (column + 0.5) * resolution - x
             while dx > end:
@@ -78,17 +80,18 @@ def mark_free(free_at, frame, gaps, sensor):
                 end = ends[k] * height
             if dx * dx + dy * dy < squares[k]:
                 cells[column] = max(cells[column], sensor.stamp)
+                hits[column] &= ~lidar
 
 
 @njit(cache=True)
-def mark_hits(layers, frame, points, moving, times):
+def mark_hits(layers, frame, points, moving, times, lidar):
     """Stamp the time where a point that does not move lies, and put it into the box of its cell.
 
-    ``layers`` are free_at, hit_at and the boxes, ``times`` now and since when hits are remembered.
-    A box begins anew with the first hit after the cell was seen free for ``FREE_FOR``.
+    ``layers`` are free_at, hit_at, hit_by and the boxes, ``times`` now and since when hits are remembered,
+    ``lidar`` is a bit. A box begins anew with the first hit after the cell was seen free for ``FREE_FOR``.
     """
     now, horizon = times
-    free_at, hit_at, boxes = layers
+    free_at, hit_at, hit_by, boxes = layers
     resolution, x0, y0 = frame
     rows, columns = hit_at.shape
     for i in range(len(points)):
@@ -101,11 +104,15 @@ def mark_hits(layers, frame, points, moving, times):
         x = points[i, 0] - x0 - (column + 0.5) * resolution
         y = points[i, 1] - y0 - (row + 0.5) * resolution
         box, hit = boxes[row, column], hit_at[row, column]
-        if hit < horizon or free_at[row, column] > hit + FREE_FOR:
+        forgotten = hit < horizon
+        if forgotten:
+            hit_by[row, column] = 0
+        if forgotten or (hit_by[row, column] == 0 and free_at[row, column] > hit + FREE_FOR):
             box.low_x, box.high_x, box.low_y, box.high_y = x, x, y, y
         box.low_x, box.high_x = min(box.low_x, x), max(box.high_x, x)
         box.low_y, box.high_y = min(box.low_y, y), max(box.high_y, y)
         hit_at[row, column] = max(hit, now)
+        hit_by[row, column] |= lidar
 
 
 @njit(cache=True)

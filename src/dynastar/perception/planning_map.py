@@ -15,6 +15,7 @@ from dynastar.perception.detection import Known
 from dynastar.perception.local_map import ROUNDED, SEEN_FREE, SEEN_OCCUPIED, LocalMap
 
 Mask = npt.NDArray[np.bool_]
+Marks = Mask | npt.NDArray[np.uint8]
 Part = tuple[slice, slice]
 
 
@@ -107,8 +108,8 @@ class PlanningMap:
         self.seen[:] = False
         return self._patch(changed, 0, 0)
 
-    def under(self, mask: Mask, local_map: LocalMap, outside: bool) -> Mask:
-        """Whether ``mask`` is true anywhere in each cell (n, n) of a local map.
+    def under(self, mask: Marks, local_map: LocalMap, outside: bool) -> Mask:
+        """Whether ``mask`` is true, or not 0, anywhere in each cell (n, n) of a local map.
 
         ``mask`` is [rows, columns] of this map; it counts as ``outside`` beyond.
         """
@@ -175,6 +176,6 @@ class NoMap(PlanningMap):
         super().__init__(OccupancyGrid(np.array([[-1]], np.int8), resolution), resolution, "free")
         self.known = Known(np.zeros_like(self.prior), self.frame)
 
-    def under(self, mask: Mask, local_map: LocalMap, outside: bool) -> Mask:
+    def under(self, mask: Marks, local_map: LocalMap, outside: bool) -> Mask:
         """As for a map; off the map nothing is known, whatever ``outside`` says."""
         return super().under(mask, local_map, False)

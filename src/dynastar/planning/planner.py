@@ -79,6 +79,11 @@ class GridPlanner:
         return self._inflated_grid.blocked
 
     @property
+    def free(self) -> npt.NDArray[np.uint8]:
+        """Not 0 where the disc fits, [rows, columns]; a view, not to be written to."""
+        return self._inflated_grid.search.free
+
+    @property
     def inflated(self) -> Mask:
         """True where the disc's centre may not be, [rows, columns]; a copy."""
         return self._inflated_grid.search.occupied

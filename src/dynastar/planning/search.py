@@ -83,7 +83,12 @@ class SearchGrid:
     @property
     def occupied(self) -> npt.NDArray[np.bool_]:
         """The mask that is searched, [rows, columns]; a copy."""
-        return self._near[1:-1, 1:-1] == 0
+        return self.free == 0
+
+    @property
+    def free(self) -> npt.NDArray[np.uint8]:
+        """Not 0 where a cell is free, [rows, columns]; a view, not to be written to."""
+        return self._near[1:-1, 1:-1]
 
     def is_free(self, cell: Cell) -> bool:
         """Whether a cell (row, column) lies on the grid and is free."""

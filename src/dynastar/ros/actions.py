@@ -123,6 +123,8 @@ class Actions:
             self._finish("canceled", "cancelled")
         elif tick.state in OVER:
             self._finish(OVER[tick.state], "" if tick.state == "arrived" else tick.reason)
+            if tick.state == "blocked":  # with a new map the navigator would try again
+                self._request(cancel=True)
         elif now - self._said_at >= FEEDBACK_EVERY and math.isfinite(state.pose.x):
             self._said_at = now
             handle.publish_feedback(self._feedback(tick, now))

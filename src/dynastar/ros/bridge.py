@@ -78,6 +78,11 @@ class Bridge(Intake):
         else:
             self.navigator.set_map(grid)
 
+    def _drop_sensed(self) -> None:
+        if self.navigator is not None:
+            self.navigator.forget()
+            self.navigator.forget_times()
+
     # -- what is asked for ------------------------------------------------------------------------
 
     def set_goals(self, goals: list[Goal]) -> None:
@@ -125,18 +130,20 @@ class Bridge(Intake):
         return json.dumps(wanted)
 
     def _change(self, values: Mapping[str, Any]) -> None:
-        """Other settings from now on; the goals stay."""
-        self.config = checked(NavigatorConfig, values)
-        if self.navigator is not None and self.grid is not None:
-            goals = self.navigator.mission.goals
-            self.navigator = Navigator(self.grid, self.robot, self.config)
-            self.navigator.set_goal(goals)
+        """Other settings from now on; goals, given path and the stop under way stay."""
+        config, before = checked(NavigatorConfig, values), self.navigator
+        if before is not None and self.grid is not None:
+            navigator = Navigator(self.grid, self.robot, config)
+            navigator.continue_from(before)
+            self.navigator = navigator
+        self.config = config
 
     def _restart(self, reason: str) -> None:
         """Forgets all but the map: time has jumped."""
         self._forget(reason)
-        if self.grid is not None:
-            self.navigator = Navigator(self.grid, self.robot, self.config)
+        if self.navigator is not None:
+            self.navigator.cancel()
+            self._drop_sensed()
 
     # -- the loop ---------------------------------------------------------------------------------
 

@@ -7,13 +7,14 @@ from dynastar.dwa.dwa import REFUSALS
 from dynastar.geometry import Twist
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import Guard, Guarded, NavigatorConfig
+from dynastar.navigator.guard import TOO_SLOW
 from dynastar.robot import Robot
 from dynastar.ros.incoming import twist_of
 from dynastar.ros.intake import Intake, lateness
 from dynastar.ros.settings import GuardSettings, NodeSettings
 
 PASSING = ("", "acceleration", "speed limit")  # reasons for which nothing is held back
-LIMITING = tuple(REFUSALS.values())
+LIMITING = (TOO_SLOW, *REFUSALS.values())
 
 
 class GuardTick(NamedTuple):
@@ -47,11 +48,15 @@ class GuardBridge(Intake):
     def _use_grid(self, grid: OccupancyGrid) -> None:
         self.guard.set_map(grid)
 
+    def _drop_sensed(self) -> None:
+        self.guard.forget_times()
+
     def request(self, **wanted: str) -> None:
         """Carries out ``restart`` or sets the ``fault``, each with its reason."""
         if "restart" in wanted:
             self._forget(wanted["restart"])
-            self.guard, self._commanded = Guard(self.robot, self.config, self.grid), -math.inf
+            self._drop_sensed()
+            self._commanded = -math.inf
         self.fault = wanted.get("fault", self.fault)
 
     def tick(self, now: float) -> GuardTick:
@@ -60,12 +65,12 @@ class GuardBridge(Intake):
         state, trouble = self._state(now)
         wrong = "no map has come yet" if self.own.use_map and self.grid is None else ""
         wrong = wrong or lateness("command", self._commanded, now, self.own.command_age)
-        if not all(map(math.isfinite, self._command)):
-            wrong = wrong or f"the command is {self._command}: expected finite speeds"
         guarded = self.guard.filter(state, scans, None if wrong else self._command)
         reason = trouble or wrong or guarded.reason
         if wrong and not trouble:
             return GuardTick(guarded, "idle", reason)
+        if not (trouble or all(map(math.isfinite, self._command))):
+            return GuardTick(guarded, "refusing", reason)
         if reason in PASSING:
             return GuardTick(guarded, "passing", "; ".join(["the command", *self.guard.hints]))
         if reason in LIMITING:

@@ -114,4 +114,5 @@ def scan_of(message: Any, mount: Mount) -> LaserScan:
         float(message.range_min),
         float(message.range_max),
         mount.pose,
+        str(message.header.frame_id),
     )

@@ -47,6 +47,9 @@ class Intake(ABC):
         self._layers: dict[str, OccupancyGrid] = {}  # the newest map and masks
         self._scan: LaserScan | None = None
         self._new_scans: list[LaserScan] = []  # since the last tick
+        self._assumed: set[str] = (
+            set()
+        )  # frames of lidars that are taken to be where one is built in
         self._now = self._at = -math.inf  # the clock, and the time of the last state
 
     # -- what comes in ----------------------------------------------------------------------------
@@ -93,9 +96,9 @@ class Intake(ABC):
             )
             v_max = self.robot.limits.v_max
             grid = with_speed_limits(grid, grids["speed_filter_mask"], v_max, scale)
-        self._layers, self.grid = grids, grid
         if grid is not None:
             self._use_grid(grid)
+        self._layers, self.grid = grids, grid
 
     def _take_scan(self, message: Any) -> None:
         self._scan = scan_of(message, self._mount(message.header.frame_id))
@@ -103,11 +106,21 @@ class Intake(ABC):
 
     def _mount(self, frame: str) -> Mount:
         """Where the lidar is: as given, else from tf where it is known, else as built in."""
-        if not self.settings.laser_pose:
-            found = self.transforms.planar(self.settings.base_frame, frame.lstrip("/"))
-            if found is not None:
-                return found
-        return Mount(self.robot.lidar.mount)
+        built_in = Mount(self.robot.lidar.mount)
+        if self.settings.laser_pose:
+            return built_in
+        found = self.transforms.planar(self.settings.base_frame, frame.lstrip("/"))
+        if found is None:
+            self._assumed.add(frame)
+            return built_in
+        if frame in self._assumed and not found.is_near(built_in):
+            self._drop_sensed()
+        self._assumed.discard(frame)
+        return found
+
+    @abstractmethod
+    def _drop_sensed(self) -> None:
+        """Drops what was sensed: a lidar was not where it was taken to be."""
 
     def _take_odometry(self, message: Any) -> None:
         self.odometry_frame = message.header.frame_id.lstrip("/")

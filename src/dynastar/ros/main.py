@@ -40,8 +40,9 @@ def simulate(scenario: Any, arguments: Sequence[str]) -> int:
 def run(make: Callable[[], Node], arguments: Sequence[str]) -> int:
     """Spins a node until a signal ends it; 0."""
     stopping: list[int] = []
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda number, frame: stopping.append(number))
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) is not signal.SIG_IGN:  # as nohup has it for SIGHUP
+            signal.signal(number, lambda number, frame: stopping.append(number))
     try:
         rclpy.init(args=list(arguments), signal_handler_options=SignalHandlerOptions.NO)
     except RuntimeError as error:  # what rclpy's own errors are

@@ -9,6 +9,7 @@ import numpy.typing as npt
 from dynastar.errors import InputError
 from dynastar.geometry import Pose2D
 
+NEAR = 0.02  # m and rad
 MOST_TILT = 5.0  # degrees between two planes, or of a pose, that count as level
 LONGEST = 50  # frames in a chain
 SET_BACK = (
@@ -23,6 +24,12 @@ class Mount(NamedTuple):
 
     pose: Pose2D
     upside_down: bool = False
+
+    def is_near(self, other: "Mount") -> bool:
+        """Whether scans from both show about the same."""
+        turn = abs(math.remainder(self.pose.theta - other.pose.theta, math.tau))
+        apart = math.dist(self.pose[:2], other.pose[:2])
+        return self.upside_down == other.upside_down and max(apart, turn) < NEAR
 
 
 class Transforms:

@@ -7,9 +7,9 @@ from time import perf_counter
 from typing import Any, Protocol
 
 from dynastar.episode import Episode
-from dynastar.errors import InputError, ScenarioError
+from dynastar.errors import InputError, ScenarioError, StartOccupied
 from dynastar.geometry import Pose2D, Twist
-from dynastar.planning.explain import explained
+from dynastar.planning.explain import explained, misfit
 from dynastar.robot import stopping_time
 from dynastar.simulation.fault_injector import FaultInjector
 from dynastar.simulation.loop_timer import LoopTimer
@@ -101,6 +101,10 @@ def drive(
             status = controller.status
             if world.time == 0.0 and status.error is not None:
                 status = _explained(status, scenario)
+            if (
+                world.time == 0.0 and status.state == "sensor_lost"
+            ):  # a lidar in a wall sees nothing
+                _check_start(scenario)
             recorder.tick(command, command_ms, status)
             if tracer is not None:
                 tracer.tick(status)
@@ -130,8 +134,19 @@ def _bar(scenario: Scenario, progress: bool) -> Any:
     )
 
 
+def _check_start(scenario: Scenario) -> None:
+    """Raises OutOfMap or StartOccupied for a start off the map or in a wall."""
+    x, y, _ = scenario.start
+    radius = scenario.robot.footprint.inscribed
+    if words := misfit(scenario.grid, "the start", (x, y), radius, scenario.unknown):
+        raise StartOccupied(words)
+
+
 def _explained(status: Any, scenario: Scenario) -> Any:
-    """The first tick's status, with what is wrong with start, goal or map; raises an InputError."""
+    """The first tick's status, with what is wrong with start, goal or map; raises an InputError.
+
+    Where the footprint fits at the start and only the margin does not, the mission is blocked.
+    """
     from dynastar.navigator import Status
 
     x, y, _ = scenario.start
@@ -140,7 +155,9 @@ def _explained(status: Any, scenario: Scenario) -> Any:
     error = explained(
         status.error, scenario.grid, (x, y), (goal.x, goal.y), radius, scenario.unknown
     )
-    if isinstance(error, InputError):
+    if isinstance(error, StartOccupied):
+        _check_start(scenario)
+    elif isinstance(error, InputError):
         raise error
     return replace(status, reason=str(error)) if isinstance(status, Status) else status
 

@@ -7,6 +7,7 @@ import numpy as np
 from dynastar.geometry import Goal, Pose2D
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import Navigator, NavigatorConfig, RobotState
+from dynastar.planning.search import SearchGrid
 from dynastar.robot import ROBOTS
 from dynastar.simulation.scenario import Mover, Scenario
 from dynastar.simulation.world import World
@@ -22,6 +23,9 @@ def warm_up() -> None:
     The first call of a version compiles, which takes about 25 s on two cores; later ones load what was
     compiled. To that end two simulated robots, a disc and a polygon, drive past a box and a walker.
     """
+    near = SearchGrid(np.zeros((3, 3), bool))  # as for a way out of the inflation
+    near.flood((0, 0))
+    near.way_to((2, 2))
     # First they turn where they stand, for which the polygon has no room. Then they drive along a path,
     # and last to a goal: by then another process may have compiled the planner.
     occupied = np.pad(np.zeros((58, 98), np.int8), 1, constant_values=100)

@@ -29,6 +29,12 @@ class Estimate:
         more = share * abs(self.value or 0.0)
         return replace(self, low=self.low - more, high=self.high + more)
 
+    def up_to(self, high: float, what: str) -> "Estimate":
+        """The same with a range up to ``high`` at the least, because of ``what``."""
+        if self.value is None or high <= self.high:
+            return self
+        return replace(self, high=high, evidence=f"{self.evidence}; up to {high:.2g} s for {what}")
+
     def words(self) -> str:
         """The estimate as a line of text."""
         unit = f" {self.unit}" if self.unit else ""

@@ -10,11 +10,12 @@ import numpy.typing as npt
 
 from dynastar.errors import ConfigError
 from dynastar.navigator import NavigatorConfig
-from dynastar.robot import ROBOTS, Robot
+from dynastar.robot import Robot
 from dynastar.tune.estimate import Estimate, untold
-from dynastar.tune.ramps import accelerations
+from dynastar.tune.ramps import accelerations, stopping_delay
 from dynastar.tune.recording import Drive
 from dynastar.tune.response import (
+    ONSET,
     SAME,
     SETTLED,
     Axis,
@@ -24,13 +25,13 @@ from dynastar.tune.response import (
     odometry_gain,
     onsets_of,
 )
-from dynastar.tune.senses import OwnPart, own_parts, range_error, readings
+from dynastar.tune.robot_file import UNKNOWN, robot_tables
+from dynastar.tune.senses import OwnPart, lidar_of, own_parts, range_error, readings
 from dynastar.tune.toml import rounded, toml_text
 
 Floats = npt.NDArray[np.float64]
 
 AXES = "v", "omega"
-UNKNOWN = "pioneer3dx"  # base of the file where the robot is not known
 MOST_ERROR = 0.5  # the largest drive_error that can be declared
 BODY = 0.1  # m beyond the footprint that a part of the robot may reach
 NEVER_TOLD = (
@@ -47,6 +48,7 @@ class Measured:
     own: tuple[OwnPart, ...]
     own_words: str
     robot: Robot | None
+    lidar: Mapping[str, float]
     left_out: tuple[str, ...] = ()
 
     def words(self) -> str:
@@ -67,7 +69,7 @@ def measured(drive: Drive, robot: Robot | None = None) -> Measured:
     onsets = [*onsets_of(v), *onsets_of(omega)]
     delay = latency(onsets)
     delays = (min(one.lower - one.unseen for one in onsets), delay.high) if delay.told else None
-    found = [delay]
+    found, going_on = [], [0.0]
     for axis, travelled in ((v, _forward(drive.poses)), (omega, _turned(drive.poses))):
         reported = odometry_gain(axis, travelled)
         scale = 1.0  # unless the recording shows another
@@ -78,8 +80,10 @@ def measured(drive: Drive, robot: Robot | None = None) -> Measured:
         )
         response = gain(true)
         derived = [response, *accelerations(true, response, delays)]
+        going_on.append(stopping_delay(true, derived[-1]))
         found += [reported, *(one.widened(_relative_error(reported)) for one in derived)]
         found.append(dead_band(true, delay))
+    found.insert(0, delay.up_to(min(max(going_on), ONSET), "the longest stop"))
     found += [_period(drive), range_error(drive.scans, _resting(drive, v, omega))]
     found.append(readings(drive.scans))
     estimates = {estimate.name: estimate for estimate in found}
@@ -90,7 +94,8 @@ def measured(drive: Drive, robot: Robot | None = None) -> Measured:
     error = estimates["range_error"]
     way = float(np.abs(np.diff(_forward(drive.poses))).sum())
     own, words = own_parts(drive.scans, way, reach, error.high if error.told else 0.05)
-    return Measured(estimates, tuple(own), words, robot, drive.left_out)
+    lidar = lidar_of(drive.scans)
+    return Measured(estimates, tuple(own), words, robot, lidar, drive.left_out)
 
 
 def robot_toml(found: Measured, source: str, told: Mapping[str, Any] | None = None) -> str:
@@ -101,7 +106,9 @@ def robot_toml(found: Measured, source: str, told: Mapping[str, Any] | None = No
     with it.
     """
     comments = {_place(name): one.words() for name, one in found.estimates.items()}
-    comments["navigator.drive_error"] = "how much faster than told the drive is, from the gains"
+    comments["navigator.drive_error"] = (
+        "how much faster than told the drive is, and how far its gains are apart"
+    )
     comments["lidar.posts"] = found.own_words
     head = [
         f"The robot as {source} shows it, by dynastar tune --bag.",
@@ -163,19 +170,14 @@ def _tables(found: Measured, told: Mapping[str, Any]) -> dict[str, Any]:
         "range_error": _end(names["range_error"], "high"),
         "drive_error": _drive_error(names["gain_v"], names["gain_omega"]),
     }
-    sensor: dict[str, Any] = {"beams": _whole(names["beams"].value)}
-    footprint, base = {}, UNKNOWN
+    known: dict[str, Any] = {"robot": {"base": UNKNOWN, "limits": {}}, "sensor": found.lidar}
     if robot is not None:
-        base = robot.name if robot.name in ROBOTS else UNKNOWN
-        footprint, limits = (
-            _footprint(robot),
-            robot.limits._asdict() | rounded(_without_none(limits)),
-        )
-        sensor = robot.lidar._asdict() | sensor
+        known = robot_tables(robot)
+    own = known["robot"]
     return {
         **rounded({"latency": latency}),
-        "robot": {"base": base, **footprint, "limits": limits},
-        "sensor": sensor,
+        "robot": {**own, "limits": own["limits"] | rounded(_without_none(limits))},
+        "sensor": known["sensor"] | {"beams": _whole(names["beams"].value)},
         "drive": rounded({f"gain_{name}": names[f"gain_{name}"].value for name in AXES}),
         "odometry": rounded(
             {f"gain_{name}": names[f"odometry_gain_{name}"].value for name in AXES}
@@ -241,9 +243,14 @@ def _period(drive: Drive) -> Estimate:
 
 
 def _drive_error(*gains: Estimate) -> float | None:
-    """How much more than told the drive does at most, as a fraction."""
-    told = [one.high - 1.0 for one in gains if one.told]
-    return min(max(0.0, *told), MOST_ERROR) if len(told) == len(gains) else None
+    """How much more than told the drive does at most, as a fraction, and how far its gains are apart.
+
+    Of a drive that is slower than told only a difference of the two speeds, which bends an arc, counts.
+    """
+    if not all(one.told for one in gains):
+        return None
+    high, low = max(one.high for one in gains), min(one.low for one in gains)
+    return min(max(high - 1.0, (high - low) / (high + low)), MOST_ERROR)
 
 
 def _end(estimate: Estimate, end: str) -> float | None:
@@ -252,12 +259,6 @@ def _end(estimate: Estimate, end: str) -> float | None:
 
 def _whole(value: float | None) -> int | None:
     return None if value is None else round(value)
-
-
-def _footprint(robot: Robot) -> dict[str, Any]:
-    if robot.footprint.is_disc:
-        return {"radius": robot.footprint.circumscribed}
-    return {"polygon": robot.footprint.vertices.tolist()}
 
 
 def _place(name: str) -> str:

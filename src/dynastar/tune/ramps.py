@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import groupby
+from itertools import groupby, pairwise
 
 import numpy as np
 
 from dynastar.tune.estimate import Estimate, untold
-from dynastar.tune.response import ERRORS, FEWEST, ROUNDING, Axis, lack
+from dynastar.tune.response import CLEAR, ERRORS, FEWEST, ROUNDING, SAME, SETTLED, Axis, lack
 
 MIDDLE = 0.1, 0.9  # of the change of speed in a ramp, between which its slope is measured
 LARGE = 0.5  # of the largest change of speed in a ramp, that others need
@@ -34,6 +34,35 @@ def accelerations(
             ramps[name].append(ramp)
     accel, brake = (_slope(name, unit, ramps[name], axis) for name in names)
     return accel, brake
+
+
+def stopping_delay(axis: Axis, brake: Estimate) -> float:
+    """Seconds that the drive goes on before it brakes, as its fast stops have it; 0 if there are none.
+
+    That is the time for which it would have kept its speed to come as far, with the weakest braking that
+    is stated: a drive that nears its speed gradually needs longer than its latency.
+    """
+    found = list(_stops(axis)) if brake.told else []
+    fastest = max((speed for speed, _ in found), default=0.0)
+    delays = [
+        way / speed - 0.5 * speed / brake.low for speed, way in found if speed >= LARGE * fastest
+    ]
+    return max(delays, default=0.0)
+
+
+def _stops(axis: Axis) -> Iterator[tuple[float, float]]:
+    """Speed and way (from the command 0 on) of each stop from a steady speed, both positive."""
+    for (begin, end, _), (_, until, command) in pairwise(axis.stretches):
+        before = axis.steady(begin, end)
+        if abs(command) > SAME or len(before) < 3 or until - end < SETTLED:
+            continue
+        speed = float(before.mean())
+        if abs(speed) > CLEAR * axis.motion:
+            inside = (axis.times > end) & (axis.times <= until)
+            times = np.concatenate([[end], axis.times[inside]])
+            speeds = np.concatenate([[speed], axis.speeds[inside]])
+            way = float((0.5 * (speeds[1:] + speeds[:-1]) * np.diff(times)).sum())
+            yield abs(speed), abs(way)
 
 
 @dataclass(frozen=True)

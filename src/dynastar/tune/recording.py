@@ -107,9 +107,10 @@ def _read(bag: BagReader, shorts: Mapping[str, str]) -> Drive:
 def _command(message: Any) -> Twist | str:
     """The command in a message, or what is wrong with it."""
     try:
-        return twist_of(getattr(message, "twist", message))
+        command = twist_of(getattr(message, "twist", message))
     except InputError as error:
         return str(error)
+    return command if all(map(math.isfinite, command)) else "the command is not finite"
 
 
 def _odometry(message: Any) -> tuple[float, ...] | str:

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from dynastar.robot import Robot
+from dynastar.bench.settings import merged
 from dynastar.tune.sampler import importances
-from dynastar.tune.space import Parameter, limited, settings_table
+from dynastar.tune.space import Parameter, limit_fractions, settings_table
 from dynastar.tune.state import State, Trial
 from dynastar.tune.toml import rounded, toml_text
 from dynastar.tune.verdict import Verdict
@@ -26,22 +26,29 @@ th { border-bottom: 1px solid } tr.best { font-weight: bold } td.words { text-al
 """
 
 
-def tuned_toml(state: State, found: Verdict, robot: Robot | None) -> str:
-    """The settings to use: the best setting where it is better than the default, else the default."""
+def tuned_toml(state: State, found: Verdict, declared: Mapping[str, Any] | None) -> str:
+    """The settings to use: the best setting where it is better than the default, else the default.
+
+    ``declared`` is the file of the robot that was tuned, if one was; then the text is such a file.
+    """
     best = state.best if found.better else None
     chosen = best or state.trials[0]
-    table: dict[str, Any] = {"navigator": settings_table(rounded(chosen.values))}
-    if robot is not None:
-        own, used = robot.limits._asdict(), limited(robot, chosen.values).limits._asdict()
-        limits = rounded({name: value for name, value in used.items() if value != own[name]})
-        table |= {"robot": {"limits": limits}} if limits else {}
-    kind = "tuned" if best is not None else "default"
-    head = (
-        f"The {kind} settings, by dynastar tune.",
+    values = rounded(chosen.values)
+    head = [
+        f"The {'tuned' if best is not None else 'default'} settings, by dynastar tune.",
         f"Tuned: {found.words}.",
-        "Copy the tables into your robot's file or a scenario; what is not here stays as it is.",
-    )
-    return toml_text(table, {}, head)
+    ]
+    if declared is None:
+        head.append(
+            "Copy the table into your robot's file or a scenario; what is not here stays as it is."
+        )
+        return toml_text({"navigator": settings_table(values)}, {}, head)
+    head.append("A file for --robot: what is not tuned is as declared.")
+    own = declared["robot"]["limits"]
+    limits = rounded({name: own[name] * part for name, part in limit_fractions(values).items()})
+    robot = {**declared["robot"], "limits": {**own, **limits}}
+    navigator = merged(declared["navigator"], settings_table(values))
+    return toml_text({**declared, "robot": robot, "navigator": navigator}, {}, head)
 
 
 def report_html(state: State, space: Sequence[Parameter], found: Verdict) -> str:
@@ -69,11 +76,15 @@ def report_html(state: State, space: Sequence[Parameter], found: Verdict) -> str
 
 
 def write_results(
-    folder: Path, state: State, space: Sequence[Parameter], found: Verdict, robot: Robot | None
+    folder: Path,
+    state: State,
+    space: Sequence[Parameter],
+    found: Verdict,
+    declared: Mapping[str, Any] | None,
 ) -> None:
-    """Writes both files."""
+    """Writes both files; ``declared`` is the file of the robot that was tuned, if one was."""
     texts: Mapping[str, str] = {
-        TUNED: tuned_toml(state, found, robot),
+        TUNED: tuned_toml(state, found, declared),
         REPORT: report_html(state, space, found),
     }
     for name, text in texts.items():

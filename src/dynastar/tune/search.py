@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
+from dynastar.errors import DynastarError
 from dynastar.tune.racing import race
 from dynastar.tune.sampler import propose
 from dynastar.tune.space import Parameter, Values
@@ -57,7 +58,9 @@ class Search:
                 trial = state.trials[-1]
                 if not trial.done:
                     self._race(trial, worlds)
-                if plan.settings is not None and len(state.finished) >= plan.settings:
+                if (
+                    plan.settings is not None and len(state.finished) > plan.settings
+                ):  # and the default
                     return
                 values = propose(space, state.finished, state.default, plan.seed)
                 state.trials.append(Trial(values))
@@ -67,9 +70,10 @@ class Search:
     def judge(self, worlds: Iterator[World], most: int) -> None:
         """Drives the default and the best setting in up to ``most`` worlds of the report seeds.
 
-        At least one batch is driven, however little time is left; results have no influence on the end.
+        At least one batch is driven, however little time is left; results have no influence on the end,
+        and a comparison that has used up its time is not extended.
         """
-        state, plan = self.state, self._plan
+        state = self.state
         best = state.best
         if best is None or best is state.trials[0]:
             return
@@ -77,14 +81,18 @@ class Search:
         if state.report_of != number:
             state.report_of, state.report_default, state.report_tuned = number, [], []
         worlds = islice(worlds, len(state.report_tuned), most)
-        while chunk := list(islice(worlds, max(1, plan.batch // 2))):
+        while chunk := self._next(worlds):
             rows = [self._timed(chunk, trial.values) for trial in (state.trials[0], best)]
             state.report_default += rows[0]
             state.report_tuned += rows[1]
             state.save(self._folder)
             self._say(f"{self._clock()} final comparison: {len(state.report_tuned)} worlds")
-            if state.spent_s >= plan.seconds:
-                return
+
+    def _next(self, worlds: Iterator[World]) -> list[World]:
+        """The next worlds of the final comparison; none when the time is up."""
+        if self.state.report_tuned and self.state.spent_s >= self._plan.seconds:
+            return []
+        return list(islice(worlds, max(1, self._plan.batch // 2)))
 
     def _race(self, trial: Trial, worlds: Sequence[World]) -> None:
         """Drives worlds with a setting until it is stopped, or in all of them."""
@@ -108,6 +116,12 @@ class Search:
         began = time.monotonic()
         rows = self._drive(worlds, values)
         self.state.spent_s += time.monotonic() - began
+        for row in rows:
+            if row["outcome"] == "error":
+                words = f"{row['suite']} {row['number']}: {row['reason']}"
+                if values == self.state.trials[0].values:
+                    raise DynastarError(f"with the default settings a mission fails: {words}")
+                self._say(f"{self._clock()} a mission fails: {words}")
         return rows
 
     def _report(self, trial: Trial, worlds: int) -> None:

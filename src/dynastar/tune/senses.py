@@ -7,6 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.config import checked
+from dynastar.errors import ConfigError
+from dynastar.robot import Lidar
 from dynastar.scan import LaserScan
 from dynastar.tune.estimate import Estimate, untold
 
@@ -30,6 +33,32 @@ class OwnPart:
     angle: float
     distance: float
     readings: int
+
+
+def lidar_of(scans: Sequence[LaserScan]) -> dict[str, float]:
+    """What the scans themselves say of their lidar, as fields of ``Lidar``: the median of each.
+
+    What a lidar cannot have is left out, as an infinite ``range_max``.
+    """
+    if not scans:
+        return {}
+    steps = np.abs([scan.angle_increment for scan in scans])
+    spans = steps * [len(scan.ranges) - 1 for scan in scans]
+    whole = spans + 1.5 * steps > math.tau  # a full circle does not repeat its first beam
+    found = {
+        "fov": float(np.median(np.where(whole, math.tau, spans))),
+        "range_min": float(np.median([scan.range_min for scan in scans])),
+        "range_max": float(np.median([scan.range_max for scan in scans])),
+    }
+    return {name: value for name, value in found.items() if _is_legal(name, value)}
+
+
+def _is_legal(name: str, value: float) -> bool:
+    try:
+        checked(Lidar, {name: value})
+    except ConfigError:
+        return False
+    return True
 
 
 def range_error(scans: Sequence[LaserScan], resting: npt.NDArray[np.bool_]) -> Estimate:

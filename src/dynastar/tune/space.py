@@ -5,12 +5,12 @@ measurements: none of them is here.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from dynastar.bench.presets import settings_of
 from dynastar.navigator import NavigatorConfig
-from dynastar.robot import Robot
+from dynastar.robot import Limits, Robot
 from dynastar.ros.settings import nested
 
 LIMITS = "limits."  # leads the names of limits, which are searched as fractions of the robot's own
@@ -45,6 +45,15 @@ SPACE: tuple[Parameter, ...] = (
 OF_ROBOT = (Parameter("limits.v_max", 0.6, 1.0), Parameter("limits.omega_max", 0.5, 1.0))
 
 
+def of_robot(limits: Limits) -> tuple[Parameter, ...]:
+    """The speeds of a robot as fractions of its own, none below the least that its drive follows."""
+    least = limits.v_least / limits.v_max, limits.omega_least / limits.omega_max
+    lows = [max(one.low, low) for one, low in zip(OF_ROBOT, least, strict=True)]
+    return tuple(
+        replace(one, low=low) for one, low in zip(OF_ROBOT, lows, strict=True) if low < one.high
+    )
+
+
 def start_values(space: Sequence[Parameter], config: NavigatorConfig) -> dict[str, float]:
     """The values with which the search begins: those of ``config``, and the robot's own limits."""
     own = {name: value for name, _, value in settings_of(config)}
@@ -65,12 +74,17 @@ def settings_table(values: Values) -> dict[str, Any]:
     return nested({name: value for name, value in values.items() if not name.startswith(LIMITS)})
 
 
-def limited(robot: Robot, values: Values) -> Robot:
-    """The robot with its limits times the fractions in ``values``."""
-    own = robot.limits._asdict()
-    limits = {
-        name.removeprefix(LIMITS): own[name.removeprefix(LIMITS)] * value
+def limit_fractions(values: Values) -> dict[str, float]:
+    """The fractions of the robot's limits in ``values``, by the limits' names."""
+    return {
+        name.removeprefix(LIMITS): value
         for name, value in values.items()
         if name.startswith(LIMITS)
     }
+
+
+def limited(robot: Robot, values: Values) -> Robot:
+    """The robot with its limits times the fractions in ``values``."""
+    own = robot.limits._asdict()
+    limits = {name: own[name] * fraction for name, fraction in limit_fractions(values).items()}
     return Robot(robot.name, robot.limits._replace(**limits), robot.footprint, robot.lidar)

@@ -3,7 +3,7 @@
 import hashlib
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -19,13 +19,16 @@ from dynastar.robot import Robot
 from dynastar.ros.settings import flat
 from dynastar.tune.objective import MOST_WORLDS
 from dynastar.tune.results import write_results
+from dynastar.tune.robot_file import declared_table
 from dynastar.tune.search import Plan, Say, Search
-from dynastar.tune.space import OF_ROBOT, SPACE, Values, settings_table, start_values, widened
+from dynastar.tune.space import SPACE, Values, of_robot, settings_table, start_values, widened
 from dynastar.tune.state import Row, alone_in, kept, load_state
 from dynastar.tune.verdict import Verdict, judged
-from dynastar.tune.worlds import RobotWorlds, World, suites_of, worlds_of
+from dynastar.tune.worlds import RobotWorlds, World, seen_before, suites_of, worlds_of
 
 FINAL = 4  # times the worlds of the search, at most, for the final comparison
+BATCHES = 4  # of worlds at the least, after each of which a setting may be stopped
+FEWEST = 4  # worlds of a batch, if that many are asked for
 
 
 @dataclass(frozen=True)
@@ -52,8 +55,9 @@ def tune(task: Task, plan: Plan, folder: Path, workers: Workers = 1, say: Say = 
         raise InputError(f"the search takes at most {MOST_WORLDS} worlds: fewer --worlds or suites")
     suites = suites_of(task.suites, task.robot, task.config)
     space = SPACE
-    if any(isinstance(suite, RobotWorlds) for suite in suites.values()):  # others have own robots
-        space += OF_ROBOT
+    drawn = any(isinstance(suite, RobotWorlds) for suite in suites.values())
+    if task.robot is not None and drawn:  # the other suites have robots of their own
+        space += of_robot(task.robot.limits)
     begin = start_values(space, task.config)
     space = widened(space, begin)
     with alone_in(folder):
@@ -63,13 +67,15 @@ def tune(task: Task, plan: Plan, folder: Path, workers: Workers = 1, say: Say = 
         if not worlds:
             raise InputError("the suites have no world to drive")
         say(f"{len(worlds)} worlds of {', '.join(suites)}, {len(space)} parameters")
+        plan = replace(plan, batch=min(plan.batch, max(FEWEST, len(worlds) // BATCHES)))
         drive = partial(driven, options, workers)
         search = Search(state, folder, begin, plan, drive, say)
         search.run(space, worlds)
         final = options._replace(seed=REPORT_SEEDS + task.seed)
         search.judge(worlds_of(suites, final, after=task.worlds), FINAL * len(worlds))
-        found = judged(state)
-        write_results(folder, state, space, found, task.robot)
+        again = seen_before(suites, final, task.worlds) if state.report_tuned else []
+        found = judged(state, again)
+        write_results(folder, state, space, found, declared_table(task.robot, task.config))
         return found
 
 

@@ -5,7 +5,7 @@ interval of the mean difference of times.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from dynastar.bench.compare import verdict
@@ -30,14 +30,21 @@ class Verdict:
     interval: tuple[float, float] | None = None
 
 
-def judged(state: State) -> Verdict:
-    """The verdict on the best setting of a search."""
+def judged(state: State, again: Sequence[str] = ()) -> Verdict:
+    """The verdict on the best setting of a search.
+
+    ``again`` are the suites whose worlds are those of the search again, which the words then say.
+    """
     tried = len(state.finished) - 1
     best = state.best
     if best is None or best is state.trials[0]:
         settings = counted(tried, "setting") or "0 settings"
         return Verdict(False, f"nothing better than the default was found in {settings}")
-    return compared(state.report_default, state.report_tuned)
+    found = compared(state.report_default, state.report_tuned)
+    if not again:
+        return found
+    which = f"; the worlds of {', '.join(again)} are those of the search again, with other noise"
+    return replace(found, words=found.words + which)
 
 
 def compared(default: Sequence[Row], tuned: Sequence[Row]) -> Verdict:

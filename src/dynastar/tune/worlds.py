@@ -16,6 +16,7 @@ import numpy as np
 from dynastar.bench import driven
 from dynastar.bench.bound import least_time
 from dynastar.bench.missions import Mission, Options, Suite, endless
+from dynastar.bench.selection import REPORT_SEEDS
 from dynastar.bench.suites import load_suite, people, people_scripts, random_worlds
 from dynastar.bench.suites.people_sites import SITES, draw_site, heading_of
 from dynastar.bench.suites.people_witness import lattice_heading
@@ -190,10 +191,18 @@ def worlds_of(
 ) -> Iterator[World]:
     """The worlds of suites in turn that their rules keep: ``count`` of each (None: all).
 
-    The first ``after`` of each are left out, unless the suite has no more.
+    The first ``after`` of each are left out, unless the suite has no more (``seen_before``).
     """
     ways = [_some(name, suite, options, after, count) for name, suite in suites.items()]
     return (world for turn in zip_longest(*ways) for world in turn if world is not None)
+
+
+def seen_before(
+    suites: Mapping[str, "str | RobotWorlds"], options: Options, after: int
+) -> list[str]:
+    """The suites that have no more than ``after`` worlds, so that the same ones are driven again."""
+    others = {name: islice(_kept(name, one, options), after, None) for name, one in suites.items()}
+    return [name for name, worlds in others.items() if next(worlds, None) is None]
 
 
 def _some(
@@ -208,7 +217,10 @@ def _some(
 def _kept(name: str, known: "str | RobotWorlds", options: Options) -> Iterator[World]:
     suite: Suite = load_suite(known) if isinstance(known, str) else known
     left_out = 0  # in a row
-    for mission in suite.missions(options):
+    missions = suite.missions
+    if options.seed < REPORT_SEEDS:  # of a suite whose cases do not depend on the seed
+        missions = getattr(suite, "development", missions)
+    for mission in missions(options):
         reason = suite.leave_out(mission, options)
         if not reason:
             yield World(name, known, mission, options.seed)

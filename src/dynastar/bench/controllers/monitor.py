@@ -31,9 +31,9 @@ class Monitor:
         points = np.column_stack(
             [x + ranges[hits] * np.cos(angles), y + ranges[hits] * np.sin(angles)]
         )
-        if np.count_nonzero(STOP_ZONE.covers(points, 0.0)) >= FEWEST:
+        if np.count_nonzero(STOP_ZONE.covers(points)) >= FEWEST:
             return Guarded(Twist(0.0, 0.0), True, "stop zone")
-        if np.count_nonzero(SLOW_ZONE.covers(points, 0.0)) >= FEWEST:
+        if np.count_nonzero(SLOW_ZONE.covers(points)) >= FEWEST:
             return Guarded(
                 Twist(SLOWDOWN * wanted.v, SLOWDOWN * wanted.omega), True, "slow-down zone"
             )

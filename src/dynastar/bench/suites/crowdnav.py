@@ -98,6 +98,13 @@ def missions(options: Options) -> Iterator[Mission]:
             yield Mission(SEEDS * VARIANTS.index(variant) + seed)
 
 
+def development(options: Options) -> Iterator[Mission]:
+    """The crossings on which settings may be tuned: none of the published cases."""
+    del options
+    for seed in DEVELOPMENT:
+        yield Mission(seed)
+
+
 def leave_out(mission: Mission, options: Options) -> str:
     """Leaves out variants that say themselves what drives, for other controllers."""
     variant, _ = _case(mission)

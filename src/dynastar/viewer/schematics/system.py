@@ -72,7 +72,7 @@ BLOCKS = {
                     "perception.tracking\nperception.prediction"),
     "recovery": Block(3.47, B, 1.2, TALL[1], PLAN_FACE, "Recovery",
                       "forget what was\nsensed, replan; in the\nend say \"blocked\"",
-                      "navigator.mission"),
+                      "navigator.recovery"),
     "watch": Block(4.86, B, 1.06, TALL[1], PLAN_FACE, "Route",
                    "path blocked? no\nprogress? a shorter\npath? at the goal?",
                    "navigator.replanning\nnavigator.progress"),

@@ -1,0 +1,28 @@
+"""A robot with its declared settings as the tables of a file for ``--robot``."""
+
+from typing import Any
+
+from dynastar.navigator import NavigatorConfig
+from dynastar.navigator.config import changes
+from dynastar.robot import ROBOTS, Robot
+
+UNKNOWN = "pioneer3dx"  # base of the file where the robot is not known
+
+
+def robot_tables(robot: Robot) -> dict[str, Any]:
+    """The tables [robot] and [sensor] of a robot."""
+    footprint: dict[str, Any] = {"radius": robot.footprint.circumscribed}
+    if not robot.footprint.is_disc:
+        footprint = {"polygon": robot.footprint.vertices.tolist()}
+    base = robot.name if robot.name in ROBOTS else UNKNOWN
+    return {
+        "robot": {"base": base, **footprint, "limits": robot.limits._asdict()},
+        "sensor": robot.lidar._asdict(),
+    }
+
+
+def declared_table(robot: Robot | None, config: NavigatorConfig) -> dict[str, Any] | None:
+    """The file of a robot with its settings that are not the default; None without a robot."""
+    if robot is None:
+        return None
+    return {**robot_tables(robot), "navigator": changes(NavigatorConfig(), config)}
