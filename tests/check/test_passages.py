@@ -57,6 +57,16 @@ def test_a_corridor_of_one_width_is_no_passage():
     assert found(OccupancyGrid.from_occupied(occupied, CELL)) == []
 
 
+@pytest.mark.parametrize("corridor", [7, 10, 20])
+def test_a_door_to_a_corridor_is_a_passage_if_it_is_narrower(corridor):
+    occupied = np.ones((60, 120), bool)
+    occupied[5:55, 5:55] = False
+    occupied[30 : 30 + corridor, 58:-1] = False
+    occupied[31:37, 55:58] = False
+    [door] = found(OccupancyGrid.from_occupied(occupied, CELL))
+    assert door.width == pytest.approx(0.6)
+
+
 def test_a_wall_of_diagonal_cells_is_closed():
     occupied = np.zeros((60, 60), bool)
     occupied[[0, -1]] = occupied[:, [0, -1]] = True

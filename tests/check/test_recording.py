@@ -89,9 +89,9 @@ class Made:
         )
 
 
-def findings(bag, remap=None):
+def findings(bag, remap=None, robot=ROBOT):
     """The findings on a recording by name."""
-    check = check_robot(ROBOT, configured("default", DECLARED), None, bag, remap, timed=False)
+    check = check_robot(robot, configured("default", DECLARED), None, bag, remap, timed=False)
     return {one.name: one for one in check.findings if one.name.startswith("recorded")}
 
 
@@ -102,6 +102,13 @@ def test_nothing_is_wrong_with_a_recording_of_what_is_declared(tmp_path):
     assert found["recorded scans"].values["median_gap"] == pytest.approx(0.1)
     assert found["recorded stamps"].values["scans_age"] == pytest.approx(0.01, abs=1e-3)
     assert found["recorded readings"].values["beams"] == 360
+
+
+def test_beams_that_are_further_apart_than_declared_are_found(tmp_path):
+    half = replace(ROBOT, lidar=Lidar(360, math.pi, 0.1, 10.0))  # as many, over half of the angle
+    one = findings(Made().write(tmp_path / "bag"), robot=half)["recorded readings"]
+    assert one.level == "problem"
+    assert "declare beams = 360 and fov = 6.26" in one.words()
 
 
 def gap(first, last):
@@ -133,7 +140,7 @@ def gap(first, last):
         ("recorded speeds", "warning", Made(v_max=0.8), "0.80 m/s"),
         ("recorded speeds", "warning", Made(v_max=0.0), "rested"),
         ("recorded commands", "problem", Made(follows_after=LATER), "latency = 0."),
-        ("recorded commands", "problem", Made(odometry=[0.25 * k for k in range(32)]), "period"),
+        ("recorded commands", "warning", Made(odometry=[0.25 * k for k in range(32)]), "period"),
     ],
 )
 def test_what_breaks_the_declared_settings_is_found(tmp_path, name, level, made, said):

@@ -16,7 +16,7 @@ Cells = npt.NDArray[np.int64]
 OFF_CENTRE = math.sqrt(
     2.0
 )  # cells by which a gap is wider than twice the clearance of its best cell
-LARGER = 1.2  # times a passage's width, that of a region on either side
+WIDER = 0.5  # cells by which the clearance in a region is larger than in its passage: a cell wider
 STEPS = ((0, 1), (1, 0), (1, 1), (1, -1))  # to half of a cell's neighbours
 
 
@@ -132,7 +132,7 @@ def _edges(clearance: Floats, basin: Cells) -> _Edges:
 def _joined(edges: _Edges, peaks: Floats, sizes: Cells, least: float) -> list[tuple[int, int]]:
     """The cells (flat) that join two large regions, each with the cells of the smaller of them.
 
-    A region is large if it has ``least`` cells and is LARGER times as wide as the place.
+    A region is large if it has ``least`` cells and is a cell wider than the place.
     """
     parent, peak, size = list(range(len(peaks))), peaks.tolist(), sizes.tolist()
 
@@ -148,7 +148,7 @@ def _joined(edges: _Edges, peaks: Floats, sizes: Cells, least: float) -> list[tu
         a, b = top(first), top(second)
         if a == b:
             continue
-        wide = min(peak[a], peak[b]) >= LARGER * low
+        wide = min(peak[a], peak[b]) >= low + WIDER
         if wide and min(size[a], size[b]) >= least:
             found.append((cell, min(size[a], size[b])))
         parent[b], peak[a], size[a] = a, max(peak[a], peak[b]), size[a] + size[b]

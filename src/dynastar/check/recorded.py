@@ -98,6 +98,8 @@ def readings(recording: Recording, robot: Robot) -> Finding:
         wrong.append(f"beams = {least}")
     if fov < (1.0 - TOLERANCE) * declared:
         wrong.append(f"fov = {at_most(fov, 4)}")
+    if not wrong and fov > (1.0 + TOLERANCE) * lidar.increment * max(beams - 1, 1):
+        wrong.append(f"beams = {beams} and fov = {at_most(fov, 4)}")  # further apart than declared
     if high < (1.0 - TOLERANCE) * lidar.range_max:
         wrong.append(f"range_max = {high:g}")
     if low > lidar.range_min + TOLERANCE:
@@ -163,18 +165,24 @@ def commands(recording: Recording, config: NavigatorConfig) -> Finding:
     """How often commands came, and when they acted."""
     gaps = np.diff(recording.commands)
     if len(gaps) == 0:
-        return Finding("recorded commands", "ok", "No commands were recorded (topic cmd_vel).")
+        number = "One command was" if len(recording.commands) else "No commands were"
+        return Finding("recorded commands", "ok", f"{number} recorded (topic cmd_vel).")
     slow = float(np.percentile(gaps, COMMAND_SHARE))
     text = f"{COMMAND_SHARE} of 100 recorded commands came within {slow:.3f} s of the one before"
     values = {"gap": slow, "latency": recording.latency}
     advice = []
+    level: Level = "ok"
     if slow > SLOWER * config.period:
-        advice.append(f"Declare period = {at_least(slow)}, or find what slows the loop down.")
+        level = "warning"
+        advice.append(
+            f"Unless they were given by hand, find what slows the loop down, or declare a period of "
+            f"{at_least(slow)} s (1 s at most)."
+        )
     if recording.latency is not None:
         text += f", and acted after about {recording.latency:.2f} s, not {config.latency:g} s"
+        level = "problem"
         advice.append(
             f"Declare latency = {recording.latency:.2g} with some reserve, or smaller accelerations: "
             "dynastar tune --bag tells which."
         )
-    level: Level = "problem" if advice else "ok"
     return Finding("recorded commands", level, f"{text}.", " ".join(advice), values)
