@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
+from dynastar.config import checked
 from dynastar.errors import InputError
 from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.io import load_scenario
@@ -200,7 +201,10 @@ def test_a_scenario_tells_the_node_all_of_its_robot():
     shape = scenario.robot.footprint
     assert values.get("radius", shape.circumscribed) == shape.circumscribed
     assert values.get("polygon", []) == pytest.approx(shape.vertices.reshape(-1).tolist())
-    assert values["laser_pose"] == pytest.approx(list(scenario.robot.lidar.mount))
+    own = checked(NodeSettings, {k: values[k] for k in fields_of(NodeSettings) if k in values})
+    made = robot_of(ROBOTS[own.robot], scenario.robot.limits, own)
+    assert made.lidar == scenario.robot.lidar
+    assert made.footprint.vertices == pytest.approx(scenario.robot.footprint.vertices)
 
 
 def test_the_readings_that_mean_no_return_are_the_robots_and_are_recorded():

@@ -72,6 +72,16 @@ def test_commands_pass_where_the_way_is_free(loop):
     assert loop.ticks(20, command=None)[-1].guarded.command == Twist(0.1, 0.0)
 
 
+def test_a_command_with_an_old_stamp_is_late_and_one_without_a_stamp_is_not(loop):
+    loop.ticks(30)
+    late = OUT.twist_stamped(AHEAD, "base_link", loop.now - 1.0)
+    loop.bridge.ask(late, loop.now)
+    tick = loop.tick(command=None)
+    assert (tick.state, tick.reason) == ("idle", "the command is 1.00 s old")
+    loop.bridge.ask(OUT.twist_stamped(AHEAD, "base_link", 0.0), loop.now)
+    assert loop.tick(command=None).state == "passing"
+
+
 def test_a_wall_holds_it_back_and_the_reason_is_told(loop):
     loop.ticks(30)
     tick = loop.ticks(50, reading=0.2)[-1]

@@ -250,6 +250,11 @@ def test_without_a_robot_the_lidar_is_the_one_that_the_scans_tell_of(tmp_path):
     found = io.load_robot(file)[0].lidar
     assert (found.beams, found.range_min, found.range_max) == pytest.approx((181, 0.2, 5.0))
     assert found.fov == pytest.approx(math.pi)
+    burger = ROBOTS["turtlebot3_burger"]  # tells the mount, not what the scans tell
+    file.write_text(robot_toml(measured(drive, burger), "bag"))
+    told = io.load_robot(file)[0].lidar
+    assert told[:4] == pytest.approx(found[:4])
+    assert told.mount == burger.lidar.mount
 
 
 def test_a_drive_that_is_slower_than_told_is_not_declared_exact(tmp_path):

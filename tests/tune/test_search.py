@@ -201,7 +201,7 @@ def test_a_robots_tuned_file_is_one_to_use(found, tmp_path):
     robot = replace(ROBOTS["jackal"], name="mine", footprint=Footprint.disc(0.3))
     config = configured("default", {"latency": 0.2, "dwa": {"reach": 0.5}})
     file = tmp_path / "tuned.toml"
-    file.write_text(tuned_toml(state, judged(state), declared_table(robot, config)))
+    file.write_text(tuned_toml(state, judged(state), declared_table(robot, config, {})))
     made, used = load_robot(file)
     assert (made.limits, made.lidar) == (robot.limits, robot.lidar)
     assert made.footprint.circumscribed == 0.3

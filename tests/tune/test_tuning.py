@@ -114,7 +114,7 @@ def test_a_damaged_state_is_named(tmp_path, text):
 
 def test_worlds_are_drawn_for_a_robot_and_the_same_for_slower_limits():
     config = NavigatorConfig(latency=0.15, range_error=0.03, period=0.1)
-    suites = suites_of(("random", "people", "crowd"), MINE, config)
+    suites = suites_of(("random", "people", "crowd"), MINE, config, {})
     assert suites["crowd"] == "crowd"
     for name in ("random", "people"):
         own = suites[name]
@@ -161,10 +161,14 @@ def test_one_mission_for_a_robot_of_a_file(tmp_path):
     file = tmp_path / "mine.toml"
     file.write_text(
         '[robot]\nbase = "turtlebot3_burger"\nradius = 0.2\n[navigator]\nperiod = 0.1\n'
+        "[drive]\ngain_v = 0.9\n[lidar]\nposts = [{angle = 2.0, distance = 0.15, readings = 3}]\n"
     )
     robot, config = io.load_robot(file)
-    worlds = RobotWorlds.of("random", robot, config).limited({"limits.v_max": 0.9})
+    worlds = RobotWorlds.of("random", robot, config, io.load_faults(file))
+    worlds = worlds.limited({"limits.v_max": 0.9})
     world = next(worlds_of({"random": worlds}, Options()))
+    made = worlds.scenario(world.mission, Options(), 0)
+    assert (made.drive.gain_v, made.lidar.posts[0].angle) == (0.9, 2.0)
     row = worlds.run_mission(world.mission, Options(), 0)
     assert row["outcome"] == "arrived"
     assert not row["contacts_moving"]

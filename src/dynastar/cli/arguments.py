@@ -27,7 +27,7 @@ def add_set(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_robot(parser: argparse.ArgumentParser) -> None:
+def add_robot(parser: argparse._ActionsContainer) -> None:
     """Add ``--robot``, a name or a file, for ``robots.named_robot``."""
     parser.add_argument(
         "--robot", metavar="ROBOT", help="a robot that comes with dynastar, or a TOML file"

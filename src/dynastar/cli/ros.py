@@ -3,6 +3,7 @@
 import argparse
 
 from dynastar import io
+from dynastar.cli.arguments import add_robot
 from dynastar.cli.parsing import path
 from dynastar.extras import require
 
@@ -15,6 +16,7 @@ EXAMPLES = """\
 examples:
   dynastar ros-sim                                              # the office; or a scenario file
   dynastar ros --scenario office
+  dynastar ros --robot my_robot.toml                            # as dynastar check reads it
   dynastar ros-goal 7.2 10
   dynastar ros --scenario office --ros-args -p bag:=out/bag     # records, see dynastar replay
   dynastar ros --ros-args -p robot:=jackal -p pose_source:=amcl -r cmd_vel:=/base/cmd_vel"""
@@ -22,7 +24,9 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options of the command."""
-    parser.add_argument(
+    given = parser.add_mutually_exclusive_group()
+    add_robot(given)
+    given.add_argument(
         "--scenario",
         type=path,
         metavar="SCENARIO",
@@ -33,12 +37,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Runs the node until it is interrupted."""
     from dynastar.cli.compiling import prepare
+    from dynastar.cli.robots import robot_arguments
 
+    robot = robot_arguments(arguments.robot)
     scenario = None if arguments.scenario is None else io.load_scenario(arguments.scenario)
     require("ros", "ROS 2 nodes need")
     prepare()
     from dynastar.ros.main import navigate
     from dynastar.ros.settings import parameters_of
 
-    given = [] if scenario is None else parameters_of(scenario)
+    given = robot if scenario is None else parameters_of(scenario)
     return navigate([*given, *arguments.ros_args])

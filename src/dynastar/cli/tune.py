@@ -65,7 +65,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=number,
         default=SEARCHING["hours"],
         metavar="H",
-        help="time in all (default 2)",
+        help="time of driving, in all (default 2)",
     )
     parser.add_argument(
         "--settings",
@@ -147,7 +147,7 @@ def _search(arguments: argparse.Namespace) -> int:
     from dynastar.bench.remote import jobs_at_once
     from dynastar.bench.workers import pool
     from dynastar.cli.compiling import prepare
-    from dynastar.cli.robots import named_robot
+    from dynastar.cli.robots import named_faults, named_robot
     from dynastar.navigator import NavigatorConfig
     from dynastar.tune.search import Plan
     from dynastar.tune.tuning import Task, tune
@@ -155,11 +155,12 @@ def _search(arguments: argparse.Namespace) -> int:
     refuse_unheard(arguments, {"topic": []}, "goes with --bag")
     if not arguments.hours >= FEWEST_HOURS:
         raise InputError(f"--hours {arguments.hours:g}: expected {FEWEST_HOURS:g} or more")
-    robot, config = None, NavigatorConfig()
+    robot, config, faults = None, NavigatorConfig(), {}
     if arguments.robot is not None:
         robot, config = named_robot(arguments.robot)
+        faults = named_faults(arguments.robot)
     names = tuple(dict.fromkeys(arguments.suite.split(",")))
-    task = Task(names, arguments.worlds, robot, config, arguments.data, arguments.seed)
+    task = Task(names, arguments.worlds, robot, config, arguments.data, arguments.seed, faults)
     if arguments.dask is not None:
         refuse_unheard(arguments, {"workers": None}, "goes with processes here, not with --dask")
     refuse_dash("--out", arguments.out)

@@ -3,6 +3,7 @@
 _WHERE = {
     "jsonable": "files",
     "load_episode": "episode_file",
+    "load_faults": "scenario_file",
     "load_map": "maps",
     "load_movingai_map": "movingai",
     "load_robot": "scenario_file",
@@ -29,6 +30,7 @@ if TYPE_CHECKING:  # what _WHERE has, for type checkers
     from dynastar.io.movingai import load_scenarios as load_scenarios
     from dynastar.io.ros_map import load_ros_map as load_ros_map
     from dynastar.io.ros_map import save_ros_map as save_ros_map
+    from dynastar.io.scenario_file import load_faults as load_faults
     from dynastar.io.scenario_file import load_robot as load_robot
     from dynastar.io.scenario_file import load_scenario as load_scenario
     from dynastar.io.scenario_file import run as run

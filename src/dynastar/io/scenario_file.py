@@ -45,6 +45,12 @@ NOWHERE: Mapping[str, Any] = {"map": {"rows": ["."]}, "start": [0.5, 0.5, 0.0], 
 OF_A_PLACE = {
     *NOWHERE, "goals", "world", "keepout", "speed_limit", "obstacles", "movers",
 }  # fmt: skip
+FAULTS = (
+    "drive",
+    "odometry",
+    "lidar",
+    "loop",
+)  # tables of what a robot does otherwise than declared
 
 
 def load_scenario(path: str | Path) -> Scenario:
@@ -72,15 +78,26 @@ def load_robot(path: str | Path) -> tuple[Robot, NavigatorConfig]:
     The file has the keys of a scenario; what tells of a place or a mission is not needed and is not
     read. Raises ScenarioError, led by the file's name.
     """
+    scenario = _load_robot(path)
+    return scenario.robot, effective_config(scenario)
+
+
+def load_faults(path: str | Path) -> dict[str, Any]:
+    """The tables [drive], [odometry], [lidar] and [loop] of a robot's file, for its simulation."""
+    source = _load_robot(path).source
+    return {key: source[key] for key in FAULTS if key in source}
+
+
+def _load_robot(path: str | Path) -> Scenario:
+    """The robot in a TOML file, nowhere."""
     path = local_path(path, ScenarioError)
     source = _read_toml(path)
     try:
         checked(ScenarioTable, {**NOWHERE, **source})
         told = {key: value for key, value in source.items() if key not in OF_A_PLACE}
-        scenario = read_scenario({**told, **NOWHERE}, path.parent, path.stem)
+        return read_scenario({**told, **NOWHERE}, path.parent, path.stem)
     except InputError as error:
         raise ScenarioError(f"{path}: {error}") from None
-    return scenario.robot, effective_config(scenario)
 
 
 def _read_toml(path: Path) -> dict[str, Any]:

@@ -27,6 +27,7 @@ SAME = 1e-9  # m/s and rad/s, by which a command that is passed on may differ
 STEADY = 0.5  # s for which a robot that was held back could hold what it speeds up to
 STOP_POSES = 16  # of the way to a stop
 TOO_SLOW = "slower than the drive can"
+LIDAR_TEST = "slower, to test a lidar"
 
 
 @dataclass(frozen=True)
@@ -35,8 +36,8 @@ class Guarded:
 
     ``changed`` tells whether it is another one than given, ``reason`` why: "acceleration" (the robot
     needs more time), "speed limit" (of the robot or the map), "slower than the drive can",
-    "no certified stop", "moving obstacle", "unseen space", or what is wrong with the data or the
-    command. It is "" if nothing was changed.
+    "no certified stop", "moving obstacle", "unseen space", "slower, to test a lidar" (one that told
+    nothing new), or what is wrong with the data or the command. It is "" if nothing was changed.
     """
 
     command: Twist
@@ -171,7 +172,7 @@ class Guard:
         tried = self.sensing.on_trial(state, command)
         if refusal or tried == command:
             return tried, refusal or self._limit(given, asked, command)
-        return tried, "; ".join(self.sensing.feed.hints)
+        return tried, LIDAR_TEST
 
     def _limit(self, given: Twist, asked: Twist, command: Twist | None) -> str:
         """Which limit a command keeps that is not the one given."""

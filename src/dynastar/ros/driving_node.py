@@ -23,7 +23,7 @@ SENSORS = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 FRAMES = QoSProfile(depth=100)
 FRAMES_FIXED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 QUALITY = {"/tf": FRAMES, "/tf_static": FRAMES_FIXED, "/diagnostics": QoSProfile(depth=10)}
-QUALITY |= {"scan": SENSORS, "odom": SENSORS}
+QUALITY |= {"scan": SENSORS, "odom": SENSORS, "cmd_vel_in": SENSORS}
 LATCHES = ("map", "keepout_filter_mask", "speed_filter_mask", "amcl_pose", "plan")
 
 

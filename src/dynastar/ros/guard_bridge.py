@@ -7,14 +7,14 @@ from dynastar.dwa.dwa import REFUSALS
 from dynastar.geometry import Twist
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import Guard, Guarded, NavigatorConfig
-from dynastar.navigator.guard import TOO_SLOW
+from dynastar.navigator.guard import LIDAR_TEST, TOO_SLOW
 from dynastar.robot import Robot
-from dynastar.ros.incoming import twist_of
+from dynastar.ros.incoming import seconds, twist_of
 from dynastar.ros.intake import Intake, lateness
 from dynastar.ros.settings import GuardSettings, NodeSettings
 
 PASSING = ("", "acceleration", "speed limit")  # reasons for which nothing is held back
-LIMITING = (TOO_SLOW, *REFUSALS.values())
+LIMITING = (TOO_SLOW, LIDAR_TEST, *REFUSALS.values())
 
 
 class GuardTick(NamedTuple):
@@ -42,8 +42,10 @@ class GuardBridge(Intake):
         return self.odometry_frame if odometry else self.settings.global_frame
 
     def ask(self, message: Any, now: float) -> None:
-        """Takes in a Twist or TwistStamped that came at ``now`` (s)."""
+        """Takes in a Twist or TwistStamped that came at ``now`` (s); a stamp of 0 says nothing."""
         self._command, self._commanded = twist_of(getattr(message, "twist", message)), now
+        if hasattr(message, "header"):
+            self._commanded = seconds(message.header.stamp) or now
 
     def _use_grid(self, grid: OccupancyGrid) -> None:
         self.guard.set_map(grid)

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, NamedTuple, get_args, get_origin, ge
 from dynastar.config import Field, checked
 from dynastar.errors import ConfigError
 from dynastar.footprint import Footprint
-from dynastar.navigator import Preset, configured
+from dynastar.navigator import NavigatorConfig, Preset, configured
 from dynastar.robot import ROBOTS, Lidar, Limits, Robot
 from dynastar.ros.localization import PoseSource
 from dynastar.simulation import Scenario
@@ -35,6 +35,14 @@ class NodeSettings(NamedTuple):
     laser_pose: Annotated[
         tuple[float, ...],
         Field("x, y, yaw of the lidar; empty: from tf, or as built in", "", -10.0, 10.0),
+    ] = ()
+    laser_beams: Annotated[int, Field("readings of a scan, 0: as built in", "", 0, 100_000)] = 0
+    laser_fov: Annotated[
+        float, Field("angle between a scan's ends, 0: as built in", "rad", 0.0, math.tau)
+    ] = 0.0
+    laser_range: Annotated[
+        tuple[float, ...],
+        Field("smallest and largest range of the lidar; empty: as built in", "m", 0.0, 1000.0),
     ] = ()
     laser_nothing: Annotated[
         tuple[float, ...],
@@ -114,15 +122,31 @@ def robot_of(base: Robot, limits: Limits, own: NodeSettings) -> Robot:
             raise ConfigError(f"'laser_pose' has {len(own.laser_pose)} values: expected x, y, yaw")
         x, y, yaw = own.laser_pose
         lidar = lidar._replace(x=x, y=y, theta=yaw)
+    if own.laser_beams:
+        lidar = lidar._replace(beams=own.laser_beams)
+    if own.laser_fov:
+        lidar = lidar._replace(fov=own.laser_fov)
+    if own.laser_range:
+        if len(own.laser_range) != 2:
+            raise ConfigError(f"'laser_range' has {len(own.laser_range)} values: expected two")
+        lidar = lidar._replace(range_min=own.laser_range[0], range_max=own.laser_range[1])
     if own.laser_nothing:
         lidar = lidar._replace(nothing=own.laser_nothing)
     return replace(base, limits=limits, footprint=footprint, lidar=lidar)
 
 
 def parameters_of(scenario: Scenario) -> list[str]:
-    """ROS arguments that give the navigator's node a scenario's robot, settings and errors."""
+    """ROS arguments that give a node a scenario's robot, settings and errors."""
+    config = effective_config(scenario)._replace(period=SIMULATED_PERIOD)
+    return ros_arguments(scenario.robot, config, scenario.preset, period=SIMULATED_PERIOD)
+
+
+def ros_arguments(
+    robot: Robot, config: NavigatorConfig, preset: Preset = "default", **more: float
+) -> list[str]:
+    """ROS arguments that give a node a robot, the settings that are not the preset's, and ``more``."""
     words = ["--ros-args"]
-    for name, value in _parameters(scenario).items():
+    for name, value in {**_parameters(robot, config, preset), **more}.items():
         words += ["-p", f"{name}:={_yaml(value)}"]
     return words
 
@@ -135,22 +159,22 @@ def _yaml(value: Any) -> str:
     return f"{value}".replace("nan", ".nan").replace("inf", ".inf") if special else f"{value}"
 
 
-def _parameters(scenario: Scenario) -> dict[str, Any]:
+def _parameters(robot: Robot, config: NavigatorConfig, preset: Preset) -> dict[str, Any]:
     """The node's parameters that differ from its defaults, and all that tells of the robot."""
-    robot, preset = scenario.robot, flat(configured(scenario.preset))
     found: dict[str, Any] = {"robot": robot.name if robot.name in ROBOTS else next(iter(ROBOTS))}
-    found["preset"] = scenario.preset
-    config = flat(effective_config(scenario))
-    found |= {name: value for name, value in config.items() if value != preset[name]}
-    found["period"] = SIMULATED_PERIOD
+    found["preset"], usual = preset, flat(configured(preset))
+    found |= {name: value for name, value in flat(config).items() if value != usual[name]}
     found |= {f"limits.{name}": value for name, value in robot.limits._asdict().items()}
     if robot.footprint.is_disc:
         found["radius"] = robot.footprint.circumscribed
     else:
         found["polygon"] = [float(value) for value in robot.footprint.vertices.reshape(-1)]
-    found["laser_pose"] = [float(value) for value in robot.lidar.mount]
-    if robot.lidar.nothing:
-        found["laser_nothing"] = [float(value) for value in robot.lidar.nothing]
+    lidar = robot.lidar
+    found["laser_pose"] = [float(value) for value in lidar.mount]
+    found |= {"laser_beams": lidar.beams, "laser_fov": float(lidar.fov)}
+    found["laser_range"] = [float(lidar.range_min), float(lidar.range_max)]
+    if lidar.nothing:
+        found["laser_nothing"] = [float(value) for value in lidar.nothing]
     return found
 
 

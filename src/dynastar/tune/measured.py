@@ -177,7 +177,7 @@ def _tables(found: Measured, told: Mapping[str, Any]) -> dict[str, Any]:
     return {
         **rounded({"latency": latency}),
         "robot": {**own, "limits": own["limits"] | rounded(_without_none(limits))},
-        "sensor": known["sensor"] | {"beams": _whole(names["beams"].value)},
+        "sensor": known["sensor"] | found.lidar | {"beams": _whole(names["beams"].value)},
         "drive": rounded({f"gain_{name}": names[f"gain_{name}"].value for name in AXES}),
         "odometry": rounded(
             {f"gain_{name}": names[f"odometry_gain_{name}"].value for name in AXES}

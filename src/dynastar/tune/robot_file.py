@@ -1,5 +1,6 @@
 """A robot with its declared settings as the tables of a file for ``--robot``."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from dynastar.navigator import NavigatorConfig
@@ -21,8 +22,13 @@ def robot_tables(robot: Robot) -> dict[str, Any]:
     }
 
 
-def declared_table(robot: Robot | None, config: NavigatorConfig) -> dict[str, Any] | None:
-    """The file of a robot with its settings that are not the default; None without a robot."""
+def declared_table(
+    robot: Robot | None, config: NavigatorConfig, faults: Mapping[str, Any]
+) -> dict[str, Any] | None:
+    """The file of a robot with its settings that are not the default, and ``faults`` for its simulation.
+
+    None without a robot.
+    """
     if robot is None:
         return None
-    return {**robot_tables(robot), "navigator": changes(NavigatorConfig(), config)}
+    return {**robot_tables(robot), **faults, "navigator": changes(NavigatorConfig(), config)}

@@ -2,10 +2,11 @@
 
 import hashlib
 import json
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from dynastar.bench.missions import Options
 from dynastar.bench.runner import Job, run_job
@@ -33,7 +34,10 @@ FEWEST = 4  # worlds of a batch, if that many are asked for
 
 @dataclass(frozen=True)
 class Task:
-    """What is tuned: the suites, ``worlds`` of each, and the user's robot with its declared settings."""
+    """What is tuned: the suites, ``worlds`` of each, and the user's robot with its declared settings.
+
+    ``faults`` has the tables [drive], [odometry], [lidar] and [loop] of its file.
+    """
 
     suites: tuple[str, ...] = ("random", "people")
     worlds: int = 20
@@ -41,6 +45,7 @@ class Task:
     config: NavigatorConfig = NavigatorConfig()
     data: Path | None = None
     seed: int = 0
+    faults: Mapping[str, Any] = field(default_factory=dict)
 
 
 def tune(task: Task, plan: Plan, folder: Path, workers: Workers = 1, say: Say = print) -> Verdict:
@@ -53,7 +58,7 @@ def tune(task: Task, plan: Plan, folder: Path, workers: Workers = 1, say: Say = 
         raise InputError(f"the seed is {task.seed}: the search takes those below {REPORT_SEEDS}")
     if task.worlds * len(task.suites) > MOST_WORLDS:
         raise InputError(f"the search takes at most {MOST_WORLDS} worlds: fewer --worlds or suites")
-    suites = suites_of(task.suites, task.robot, task.config)
+    suites = suites_of(task.suites, task.robot, task.config, task.faults)
     space = SPACE
     drawn = any(isinstance(suite, RobotWorlds) for suite in suites.values())
     if task.robot is not None and drawn:  # the other suites have robots of their own
@@ -75,7 +80,8 @@ def tune(task: Task, plan: Plan, folder: Path, workers: Workers = 1, say: Say = 
         search.judge(worlds_of(suites, final, after=task.worlds), FINAL * len(worlds))
         again = seen_before(suites, final, task.worlds) if state.report_tuned else []
         found = judged(state, again)
-        write_results(folder, state, space, found, declared_table(task.robot, task.config))
+        declared = declared_table(task.robot, task.config, task.faults)
+        write_results(folder, state, space, found, declared)
         return found
 
 

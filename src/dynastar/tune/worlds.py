@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import chain, islice, zip_longest
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,7 @@ from dynastar.config import choose
 from dynastar.episode import Episode
 from dynastar.errors import DataError, InputError
 from dynastar.geometry import Goal
+from dynastar.io.scenario_file import FAULTS, NOWHERE, read_scenario
 from dynastar.navigator import NavigatorConfig
 from dynastar.robot import Robot
 from dynastar.ros.settings import flat, nested, robot_from, robot_table
@@ -61,8 +63,10 @@ class RobotWorlds:
     DEFAULT_MISSIONS = None
 
     @staticmethod
-    def of(name: str, robot: Robot, config: NavigatorConfig) -> "RobotWorlds":
-        """The worlds of a suite for a robot, with what is declared of it.
+    def of(
+        name: str, robot: Robot, config: NavigatorConfig, faults: Mapping[str, Any]
+    ) -> "RobotWorlds":
+        """The worlds of a suite for a robot, with what is declared of it, and ``faults`` of its file.
 
         A robot of another name than those of the suites has worlds that fit its size.
         """
@@ -70,6 +74,7 @@ class RobotWorlds:
         table = {
             "robot": robot_table(replace(robot, name=f"own {robot.name}")),
             "navigator": nested(flat(config)),
+            "faults": faults,
         }
         return RobotWorlds(name, json.dumps(table))
 
@@ -115,9 +120,13 @@ def _drawn(name: str, declared: str, seed: int, number: int) -> tuple[Scenario, 
     if isinstance(made, str):
         return made
     scenario, reachable = made
-    noise = Noise(range_bound=navigator["range_error"])
+    faults = read_scenario({**NOWHERE, "robot": "paper", **table["faults"]}, Path(), name)
     return replace(
-        scenario, noise=noise, latency=navigator["latency"], navigator=navigator
+        scenario,
+        noise=Noise(range_bound=navigator["range_error"]),
+        latency=navigator["latency"],
+        navigator=navigator,
+        **{key: getattr(faults, key) for key in FAULTS},
     ), reachable
 
 
@@ -171,7 +180,7 @@ def _among_people(robot: Robot, seed: int, number: int) -> tuple[Scenario, bool]
 
 
 def suites_of(
-    names: Sequence[str], robot: Robot | None, config: NavigatorConfig
+    names: Sequence[str], robot: Robot | None, config: NavigatorConfig, faults: Mapping[str, Any]
 ) -> dict[str, "str | RobotWorlds"]:
     """The suites by name; ConfigError for an unknown one, InputError for one that drives nothing."""
     found: dict[str, str | RobotWorlds] = {}
@@ -179,7 +188,7 @@ def suites_of(
         if not hasattr(load_suite(name), "scenario"):
             raise InputError(f"--suite {name}: drives nothing, so there is nothing to tune")
         drawn = robot is not None and name in DRAWN
-        found[name] = RobotWorlds.of(name, robot, config) if drawn and robot else name
+        found[name] = RobotWorlds.of(name, robot, config, faults) if drawn and robot else name
     return found
 
 

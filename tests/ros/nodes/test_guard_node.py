@@ -38,7 +38,7 @@ class Joystick:
 @pytest.fixture
 def joystick(client, processes):
     client.simulator = processes.start("ros-sim", OFFICE)
-    client.guard = processes.start("ros-guard", "--ros-args", "-p", "robot:=pioneer3dx")
+    client.guard = processes.start("ros-guard", "--robot", "pioneer3dx")
     client.wait_for("no command has come yet")
     return Joystick(client)
 
