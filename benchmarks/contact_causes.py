@@ -105,7 +105,7 @@ def examined(episode: Episode, scenario: Scenario) -> dict[str, Any]:
         strayed = float(np.hypot(*(place[-1] - place[last] - velocity * (end - times[last]))))
     world = scenario.grid if scenario.world is None else scenario.world
     lidar = LidarSimulator(scenario.robot.lidar, world, episode.obstacles)
-    window = np.flatnonzero((times >= noticed - SEEN) & (times <= noticed))
+    window = np.flatnonzero((times >= noticed - SEEN) & (times <= max(noticed, times[0])))
     seen, looked = zip(*(hits(episode, lidar, tick, person) for tick in window), strict=True)
     speed = float(speeds[-1])
     cause = "drove on"

@@ -25,7 +25,7 @@ from typing import NamedTuple
 
 import results_kept
 import results_pages
-from results_kept import is_done, read_record
+from results_kept import is_begun, is_done, read_record
 from results_parts import Part, missing, parts
 
 import dynastar
@@ -69,7 +69,9 @@ def check_sources() -> None:
 def check_extras() -> None:
     """Refuses to measure without the packages of all parts."""
     if found := missing():
-        raise SystemExit(f"packages are missing: pip install '.[{','.join(found)}]' in this clone")
+        raise SystemExit(
+            f"packages are missing: pip install -e '.[{','.join(found)}]' in this clone"
+        )
 
 
 def machine() -> str:
@@ -97,7 +99,7 @@ def measure(part: Part, folder: Path, sources: Source, missions: int | None) -> 
     """Runs a part and adds it to the record, also where it is cut off; True if it came to its end."""
     record = read_record(folder)
     before = record.get(part.name, {})
-    goes_on = before.get("tree") == sources.tree and not before["complete"]
+    goes_on = is_begun(part, record, sources.tree) and not before["complete"]
     spent = before["minutes"] if goes_on else 0.0
     began, code = time.monotonic(), None
     try:
@@ -105,7 +107,8 @@ def measure(part: Part, folder: Path, sources: Source, missions: int | None) -> 
     finally:
         minutes = round(spent + (time.monotonic() - began) / 60.0, 1)
         of = {**sources._asdict(), "machine": machine(), "date": date.today().isoformat()}
-        record[part.name] = {**of, "minutes": minutes, "complete": code == 0}
+        of |= {"command": " ".join(part.command), "minutes": minutes}
+        record[part.name] = {**of, "complete": code == 0}
         io.write_json(folder / "record.json", record)
     print(f"{part.name}: {minutes} min" if code == 0 else f"{part.name}: FAILED", flush=True)
     return code == 0
@@ -117,7 +120,7 @@ def measure_all(
     """Runs the parts that are not done, and says what is left; the names of those that failed."""
     folder.mkdir(parents=True, exist_ok=True)
     record = read_record(folder)
-    left = [part for part in asked if not is_done(part.name, record, sources.tree, folder)]
+    left = [part for part in asked if not is_done(part, record, sources.tree, folder)]
     failed = []
     while left:
         minutes = sum(part.minutes for part in left)
@@ -130,26 +133,31 @@ def measure_all(
 
 def show(everything: Sequence[Part], sources: Source) -> None:
     """Prints the parts with their minutes, and which are done."""
-    record = read_record(FOLDER)
+    here, kept = read_record(FOLDER), read_record(KEPT)
     for part in everything:
-        done = is_done(part.name, record, sources.tree, FOLDER)
-        state = f"done in {record[part.name]['minutes']} min" if done else ""
+        done = [
+            record[part.name]["minutes"]
+            for record, folder in ((here, FOLDER), (kept, KEPT))
+            if is_done(part, record, sources.tree, folder)
+        ]
+        state = f"done in {done[0]} min" if done else ""
         print(f"{part.name:24} about {part.minutes:3} min  {state}")
     print(f"{'all':24} about {sum(part.minutes for part in everything):3} min")
 
 
-def write_pages(everything: Sequence[Part], sources: Source) -> None:
-    """Writes into the pages what was measured on these sources."""
+def write_pages(everything: Sequence[Part], sources: Source) -> bool:
+    """Keeps what was measured on these sources and writes the pages; whether all blocks could be."""
     record = read_record(FOLDER)
-    done = [p.name for p in everything if is_done(p.name, record, sources.tree, FOLDER)]
+    done = [p.name for p in everything if is_done(p, record, sources.tree, FOLDER)]
     if not done:
         raise SystemExit(f"no part was measured on the sources of {sources.commit}")
     read = {name: (FOLDER / f"{name}.json").read_text(encoding="utf-8") for name in done}
     found = {name: json.loads(text) for name, text in read.items()}
-    for line in results_pages.write(ROOT, found, {name: record[name] for name in done}):
-        print(line)
-    results_pages.copy_pictures(FOLDER / "paper", done)
     results_kept.keep(FOLDER, KEPT, sources.tree, os.environ["DYNASTAR_DATA"])
+    results_pages.copy_pictures(FOLDER / "paper", done)
+    lines, whole = results_pages.write(ROOT, found, {name: record[name] for name in done})
+    print("\n".join(lines))
+    return whole
 
 
 def main(words: Sequence[str] | None = None) -> int:
@@ -187,11 +195,10 @@ def main(words: Sequence[str] | None = None) -> int:
         if trial:
             shutil.rmtree(folder, ignore_errors=True)
         failed = measure_all(asked, folder, sources, arguments.missions)
-    if not trial:
-        write_pages(everything, sources)
+    whole = trial or write_pages(everything, sources)
     if failed:
         print(f"failed: {', '.join(failed)}")
-    return 1 if failed else 0
+    return 0 if whole and not failed else 1
 
 
 if __name__ == "__main__":

@@ -10,6 +10,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from results_parts import Part
+
 from dynastar import io
 from dynastar.writing import written_aside
 
@@ -27,17 +29,25 @@ def read_record(folder: Path) -> Record:
     return found
 
 
-def is_done(part: str, record: Mapping[str, Mapping[str, Any]], tree: str, folder: Path) -> bool:
+def is_begun(part: Part, record: Mapping[str, Mapping[str, Any]], tree: str) -> bool:
+    """Whether a part was measured, perhaps not to its end, by its command on these sources."""
+    of = record.get(part.name, {})
+    return of.get("tree") == tree and of.get("command") == " ".join(part.command)
+
+
+def is_done(part: Part, record: Mapping[str, Mapping[str, Any]], tree: str, folder: Path) -> bool:
     """Whether a part was measured to its end on these sources."""
-    of = record.get(part, {})
-    return of.get("tree") == tree and of["complete"] and (folder / f"{part}.json").is_file()
+    if not (is_begun(part, record, tree) and record[part.name]["complete"]):
+        return False
+    return any((folder / f"{part.name}.json{packed}").is_file() for packed in ("", PACKED))
 
 
 def files_of(part: str, complete: bool, folder: Path, packed: str = "") -> list[Path]:
     """The result of a part; of one that was cut off, the rows that it has so far."""
     if complete:
         return list(folder.glob(f"{part}.json{packed}"))
-    rows = (f"{part}.json.rows.jsonl{packed}", f"paper/{part}*.jsonl{packed}")
+    rows = [f"{part}.json.rows.jsonl{packed}", f"paper/{part}*.jsonl{packed}"]
+    rows += [f"paper/terms.jsonl{packed}"] if part == "ablation" else []
     return [file for name in rows for file in folder.glob(name)]
 
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import results_tables as tables
 import scoreboard_page as scoreboard
 import simulators_page as simulators
-from results_parts import MAPS_BESIDE, parts
+from results_parts import INDIFFERENT, MAPS_BESIDE, parts
 from results_targets import TARGETS, targets_table
 
 from dynastar.bench.figures import FIGURES
@@ -80,6 +80,7 @@ def failures(everything: Mapping[str, Any]) -> dict[str, dict[str, list[int]]]:
 VARIANTS = ("crowdnav", "crowdnav_variants", "crowdnav_orca")
 ATTENTION = ("people_late", "people_none", "crowd_late", "crowd_none")
 ALL = {part.name: part for part in parts()}
+INDIFFERENTS = tuple(name for name in ALL if name.partition("-")[0] == INDIFFERENT)
 REACTIVE = ("people_reactive",) if "people_reactive" in ALL else ()
 BLOCKS = (
     of_scoreboard("scoreboard", lambda of: scoreboard.scoreboard(of["suites"])),
@@ -121,7 +122,7 @@ BLOCKS = (
     Block(
         README,
         "results",
-        ("scoreboard", "people_none", "crowdnav", "crowdnav_orca", "navground", "table1"),
+        ("scoreboard", *INDIFFERENTS, "crowdnav", "crowdnav_orca", "navground", "table1"),
         tables.readme_table,
     ),
 )
@@ -140,9 +141,12 @@ def blocks_of(page: str, parts: Container[str]) -> list[Block]:
     return [block for block in of if all(part in parts for part in block.parts)]
 
 
-def header(page: str, record: Record) -> str:
-    """What a page says at its top: commit, machine and day, and which blocks, while parts are missing."""
-    blocks = blocks_of(page, record)
+def header(page: str, record: Record, failed: Container[str] = ()) -> str:
+    """What a page says at its top: commit, machine and day, and which blocks, while some are missing.
+
+    ``failed`` names blocks that could not be written.
+    """
+    blocks = [block for block in blocks_of(page, record) if block.name not in failed]
     shown = [record[name] for name in {name for block in blocks for name in block.parts}]
     if not shown:
         return "The figures of this page are of earlier commits."
@@ -151,28 +155,35 @@ def header(page: str, record: Record) -> str:
     )
     when = days[0] if len(days) == 1 else f"{days[0]} to {days[-1]}"
     words = f"Measured on commit {', '.join(commits)} ({'; '.join(machines)}; {when})"
-    if all(name in record for name in parts_of(page)):
+    if not failed and all(name in record for name in parts_of(page)):
         return f"{words}."
     names = ", ".join(f"`{block.name}`" for block in blocks)
     return f"{words}: {names}. All other figures of this page are of earlier commits."
 
 
-def write(root: Path, found: Found, record: Record) -> list[str]:
-    """Writes the pages; what was written, in words."""
-    said = []
+def write(root: Path, found: Found, record: Record) -> tuple[list[str], bool]:
+    """Writes the pages; what was written, in words, and whether each block could be."""
+    said, whole = [], True
     for page in PAGES:
         file = root / page
         document = file.read_text(encoding="utf-8")
-        blocks = blocks_of(page, found)
+        blocks, failed = blocks_of(page, found), []
         for block in blocks:
-            document = fill(document, block.name, block.text(found).strip(), file)
-        document = fill(document, "measured", header(page, record), file)
+            try:
+                text = block.text(found).strip()
+            except Exception as error:
+                failed.append(block.name)
+                said.append(f"{page}: {block.name} is left as it was: {error!r}")
+                continue
+            document = fill(document, block.name, text, file)
+        whole = whole and not failed
+        document = fill(document, "measured", header(page, record, failed), file)
         with written_aside(file) as aside:
             aside.write_text(document, encoding="utf-8")
         missing = [name for name in parts_of(page) if name not in found]
         left = f"; missing: {', '.join(missing)}" if missing else ""
-        said.append(f"{page}: {len(blocks)} blocks{left}")
-    return said
+        said.append(f"{page}: {len(blocks) - len(failed)} blocks{left}")
+    return said, whole
 
 
 def copy_pictures(folder: Path, done: Sequence[str]) -> None:

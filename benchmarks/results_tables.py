@@ -8,6 +8,7 @@ from typing import Any
 from contact_causes import CAUSES
 from results_parts import INDIFFERENT, MAPS_BESIDE
 from results_targets import contacts_of, counted, with_interval
+from scoreboard_page import beside
 
 from dynastar.bench.statistics import totals
 
@@ -55,7 +56,7 @@ COMPARED = {  # lines of the README: its suite of the scoreboard
     "BARN: static clutter (1)": "barn",
     "DynaBARN: fast discs (1)": "dynabarn",
     "real maps, unmapped boxes, walkers (1)": "maps",
-    "people who notice the robot late (1)": "people",
+    "people who notice the robot late, or react (1)": "people",
 }
 
 
@@ -197,18 +198,13 @@ def others_in_words(others: Mapping[str, Result]) -> str:
 
 def readme_table(found: Found) -> str:
     """The table of results in the README."""
-    suites, others = found["scoreboard"]["suites"], found["scoreboard"]["others"]
-    lines = [
-        (
-            title,
-            ours(suites[name]),
-            others_in_words({c: of[name] for c, of in others.items() if name in of}),
-        )
-        for title, name in COMPARED.items()
-    ]
+    lines = []
+    for title, name in COMPARED.items():
+        of, others = beside(found["scoreboard"], name)
+        lines.append((title, ours(of), others_in_words(others)))
     prefix = f"{INDIFFERENT}-"
-    beside = {n.removeprefix(prefix): of for n, of in found.items() if n.startswith(prefix)}
-    lines.append(("indifferent people (1)", ours(found[INDIFFERENT]), others_in_words(beside)))
+    others = {n.removeprefix(prefix): of for n, of in found.items() if n.startswith(prefix)}
+    lines.append(("indifferent people (1)", ours(found[INDIFFERENT]), others_in_words(others)))
     crowd, orca, ground = found["crowdnav"], found["crowdnav_orca"], found["navground"]
     words = f"ORCA {ours(orca)}, {orca['mean_time']:.1f} s; in print SARL 0.99, 10.6 s"
     title = "crowdnav's circle, the published cases (2)"

@@ -28,6 +28,7 @@ KINDS = {
     "wrong": "a wrong result of the search",
     "error": "an error",
 }
+NOT_DRAWN = ("wrong", "error")  # there is no drive to draw
 
 Row = dict[str, Any]
 
@@ -130,17 +131,25 @@ def told(suite: dict[str, Any]) -> str:
     return f"{arrived}, {contacts}{f', {own}' if own else ''}"
 
 
+def beside(found: dict[str, Any], name: str) -> tuple[Any, dict[str, Any]]:
+    """What the navigator and the other controllers came to in a suite's missions that all of them drove."""
+    others = {other: of[name] for other, of in found["others"].items() if name in of}
+    rows = found["suites"][name]["rows"]
+    for of in others.values():
+        driven = {row["number"] for row in of["rows"]}
+        rows = [row for row in rows if row["number"] in driven]
+    return totals(rows, 0), others
+
+
 def controllers_table(found: dict[str, Any]) -> str:
     """The navigator and the other controllers in the same missions."""
     others = found["others"]
     titles = " | ".join(f"`{name}`" for name in (found["controller"], *others))
     lines = [f"| suite | {titles} |", f"|---|---{'|---' * len(others)}|"]
-    for name, suite in found["suites"].items():
-        beside = [of[name] for of in others.values() if name in of]
-        if beside:
-            driven = {row["number"] for row in beside[0]["rows"]}
-            ours = totals([row for row in suite["rows"] if row["number"] in driven], 0)
-            cells = [told(of[name]) if name in of else "" for of in others.values()]
+    for name in found["suites"]:
+        ours, theirs = beside(found, name)
+        if theirs:
+            cells = [told(theirs[other]) if other in theirs else "" for other in others]
             lines.append(f"| `{name}` | {' | '.join([told(ours), *cells])} |")
     return "\n".join(lines)
 
@@ -160,16 +169,17 @@ def draw(suite: str, number: int, file: Path, size: int, colours: int) -> None:
 def pictures(found: dict[str, dict[str, list[int]]]) -> str:
     """Draws the first mission of each kind, of the suite with most of them; the lines of the page."""
     PICTURES.mkdir(parents=True, exist_ok=True)
-    for old in PICTURES.glob("*.png"):
-        old.unlink()
-    shown = []
+    shown, drawn = [], set()
     for kind, words in KINDS.items():
         of = found.get(kind)
-        if not of:
+        if not of or kind in NOT_DRAWN:
             continue
         suite = max(of, key=lambda name: len(of[name]))
         name = f"{suite}-{of[suite][0]}.png"
         draw(suite, of[suite][0], PICTURES / name, 1000, 96)
+        drawn.add(PICTURES / name)
         title = f"`{suite}` {of[suite][0]}: {words}."
         shown.append(f"![{title.replace('`', '')}](media/benchmarks/{name})\n\n*{title}*")
+    for old in set(PICTURES.glob("*.png")) - drawn:
+        old.unlink()
     return "\n\n".join(shown)

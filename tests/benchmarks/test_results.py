@@ -74,7 +74,8 @@ def test_what_is_done_is_left_out_until_the_sources_change(tmp_path, runs, capsy
 
 @pytest.mark.parametrize(("sources", "least"), [(NOW, 7.0), (BEFORE, 0.0)])
 def test_the_minutes_of_a_part_that_was_cut_off_add_up(tmp_path, runs, sources, least):
-    begun = {"tree": "now", "minutes": 7.0, "complete": False}
+    command = " ".join(PARTS["barn"].command)
+    begun = {"tree": "now", "command": command, "minutes": 7.0, "complete": False}
     (tmp_path / "record.json").write_text(json.dumps({"barn": begun}))
     assert results.measure(PARTS["barn"], tmp_path, sources, None)
     assert least <= results.read_record(tmp_path)["barn"]["minutes"] < least + 5.0
@@ -89,7 +90,7 @@ def test_a_part_that_is_interrupted_is_recorded_as_begun(tmp_path, monkeypatch):
         results.measure(PARTS["barn"], tmp_path, NOW, None)
     record = results.read_record(tmp_path)
     assert record["barn"]["tree"] == "now"
-    assert not results.is_done("barn", record, "now", tmp_path)
+    assert not results.is_done(PARTS["barn"], record, "now", tmp_path)
 
 
 @pytest.fixture
@@ -102,7 +103,9 @@ def command(tmp_path, monkeypatch, runs):
     monkeypatch.setattr(results, "source", lambda: NOW)
     monkeypatch.setattr(results, "git", lambda *words: "")
     monkeypatch.setattr(results, "missing", lambda: [])
-    monkeypatch.setattr(results.results_pages, "write", lambda *of: written.append(of[1:]) or ())
+    monkeypatch.setattr(
+        results.results_pages, "write", lambda *of: written.append(of[1:]) or ([], True)
+    )
     monkeypatch.setattr(results.results_pages, "copy_pictures", lambda *of: None)
     return written
 

@@ -66,7 +66,7 @@ def test_blocks_are_written_as_soon_as_their_parts_are_there(tmp_path):
         "barn": {"rows": [{"time": 300.0}], "cpu_s": 10.0},
     }
     record = {name: of() for name in found}
-    said = pages.write(tmp_path, found, record)
+    said, whole = pages.write(tmp_path, found, record)
     after = {page: (tmp_path / page).read_text(encoding="utf-8") for page in pages.PAGES}
     assert between(after[pages.PAPER], "presets") == "new presets"
     picture = "![From print to robot](media/paper/ladder.png)"
@@ -81,6 +81,16 @@ def test_blocks_are_written_as_soon_as_their_parts_are_there(tmp_path):
         assert between(after[page], name) == between(before[page], name) != ""
     assert between(after[pages.README], "measured") == EARLIER
     assert "missing: scoreboard" in said[-1]
+    assert whole
+    found["barn"] = {"rows": [{"outcome": "error"}], "cpu_s": 10.0}
+    found["presets"] = {"tables": {"presets": "newer presets"}}
+    said, whole = pages.write(tmp_path, found, record)
+    assert not whole
+    assert any("speed is left as it was: KeyError" in line for line in said)
+    after = {page: (tmp_path / page).read_text(encoding="utf-8") for page in pages.PAGES}
+    assert "30 times faster" in between(after[pages.BENCHMARKS], "speed")
+    assert between(after[pages.BENCHMARKS], "measured") == EARLIER
+    assert between(after[pages.PAPER], "presets") == "newer presets"
 
 
 def test_pictures_of_a_part_that_was_measured_elsewhere_stay_as_they_are(tmp_path, monkeypatch):

@@ -235,9 +235,10 @@ def test_the_speed_of_a_suite():
 def test_the_readmes_table():
     found = {"scoreboard": {"suites": {}, "others": {"pure_pursuit": {}, "kompass_dwa": {}}}}
     for name in tables.COMPARED.values():
-        found["scoreboard"]["suites"][name] = result(40, 40)
-        found["scoreboard"]["others"]["pure_pursuit"][name] = result(27, 40)
-    found["scoreboard"]["others"]["kompass_dwa"]["barn"] = result(39, 40)
+        found["scoreboard"]["suites"][name] = result(39, 40, rows=[row(n) for n in range(40)])
+        half = [row(n) for n in range(0, 40, 2)]
+        found["scoreboard"]["others"]["pure_pursuit"][name] = result(13, 20, rows=half)
+    found["scoreboard"]["others"]["kompass_dwa"]["barn"] = result(19, 20, rows=half)
     beside = {"HL": row(time=8.8), "ORCA": row(outcome="contact")}
     found |= {
         "people_none": result(94, 160),
@@ -252,10 +253,10 @@ def test_the_readmes_table():
     found["table1"] = {"tables": {"table1-time": arms, "table1-length": arms}}
     shown = lines(tables.readme_table(found))
     assert shown[2] == (
-        "| BARN: static clutter (1) | 40 of 40 (91-100) | "
-        "kompass DWA 39 of 40 (87-100), pure pursuit 27 of 40 (52-80) |"
+        "| BARN: static clutter (1) | 20 of 20 (84-100) | "
+        "kompass DWA 19 of 20 (76-99), pure pursuit 13 of 20 (43-82) |"
     )
-    assert shown[3].endswith("| pure pursuit 27 of 40 (52-80) |")
+    assert shown[3].endswith("| pure pursuit 13 of 20 (43-82) |")
     assert shown[6] == "| indifferent people (1) | 94 of 160 (51-66) | ORCA 50 of 160 (25-39) |"
     assert "| 495 of 500 (98-100), 11.8 s | ORCA 212 of 500 (38-47), 11.8 s; in print" in shown[7]
     assert shown[8].endswith("| HL 2 of 2 (34-100), 8.8 s; ORCA 1 of 2 (9-91), 10.0 s |")

@@ -10,22 +10,17 @@ from typing import Any
 import numpy as np
 
 from dynastar.bench.arms import ARMS, BASE, NOT_EXACT, run_mission
-from dynastar.bench.arms import SOURCES as OF_ARMS
 from dynastar.bench.missions import Mission, Options
 from dynastar.bench.pairs import beside, correct, interval_in_words, p_in_words, totals
 from dynastar.bench.rows import collect
 from dynastar.bench.selection import choose_missions
 from dynastar.bench.suites import load_suite
 from dynastar.bench.tables import Cell, Table
-from dynastar.bench.versions import version
+from dynastar.bench.versions import code_version
 from dynastar.simulation import Scenario
 
 WORLDS = 100  # of each suite, unless another number is asked for
 SUITES = ("paper", "people")
-SOURCES = (*OF_ARMS, "ablation", "driven", "suites/people", "suites/people_crowd",
-           "suites/people_routes", "suites/people_scripts", "suites/people_sites",
-           "suites/people_witness", "suites/people_witness_kernels",
-           "suites/people_witness_search")  # fmt: skip
 
 Row = dict[str, Any]
 
@@ -51,7 +46,7 @@ def run(
         for mission in choose_missions(load_suite(name), options)[0]
         for arm in ARMS
     ]
-    run_of = {"table": "ablation", "seed": seed, "version": version(*SOURCES)}
+    run_of = {"table": "ablation", "seed": seed, "version": code_version()}
     run_of |= {"settings": settings} if settings else {}
     work = partial(_row, seed=seed, settings=settings)
     return collect("ablation", work, jobs, folder / "ablation.jsonl", run_of, workers, progress)

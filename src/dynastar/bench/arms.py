@@ -15,10 +15,6 @@ from dynastar.planning import HeuristicConfig
 from dynastar.simulation import Controller, Scenario
 from dynastar.simulation import run as drive
 
-# The modules of bench that the rows of an arm in the suite paper depend on.
-SOURCES = ("arms", "follower", "unplanned", "paper", "own_maps", "settings", "controllers/printed",
-           "controllers/base", "controllers/costmap", "controllers/route")  # fmt: skip
-
 ALL_TERMS = HeuristicConfig()
 PLAIN = HeuristicConfig(exponential=False, parent=False, k=0.0, weight=1.0)
 

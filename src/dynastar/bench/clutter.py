@@ -10,12 +10,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dynastar.bench import paper, table3
-from dynastar.bench.arms import SOURCES, Arm, run_mission
+from dynastar.bench.arms import Arm, run_mission
 from dynastar.bench.controllers.printed import Printed, PrintedReplanning
 from dynastar.bench.pairs import interval_in_words, totals
 from dynastar.bench.rows import collect
 from dynastar.bench.tables import Cell, Table
-from dynastar.bench.versions import version
+from dynastar.bench.versions import code_version
 from dynastar.simulation import Mover, Scenario
 
 WORLDS = 50  # for each line of the tables, unless another number is asked for
@@ -53,7 +53,7 @@ def run(
     kinds = list(dict.fromkeys([*BY_DENSITY, *BY_SPEED]))
     numbers = {occupied: _numbers(occupied, worlds, seed) for occupied in OCCUPIED}
     jobs = [(*kind, number) for kind in kinds for number in numbers[kind.occupied]]
-    run_of = {"table": "clutter", "seed": seed, "version": version("clutter", *SOURCES)}
+    run_of = {"table": "clutter", "seed": seed, "version": code_version()}
     work = partial(_row, seed=seed)
     return collect("clutter", work, jobs, folder / "clutter.jsonl", run_of, workers, progress)
 

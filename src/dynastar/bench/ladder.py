@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from dynastar.bench import paper
-from dynastar.bench.arms import SOURCES, Arm, run_mission
+from dynastar.bench.arms import Arm, run_mission
 from dynastar.bench.controllers.printed import Printed, PrintedReplanning
 from dynastar.bench.missions import Options
 from dynastar.bench.pairs import beside, correct, interval_in_words, p_in_words, totals
@@ -15,7 +15,7 @@ from dynastar.bench.rows import collect
 from dynastar.bench.selection import choose_missions
 from dynastar.bench.settings import merged
 from dynastar.bench.tables import Cell, Table
-from dynastar.bench.versions import version
+from dynastar.bench.versions import code_version
 from dynastar.navigator import PRESETS
 from dynastar.simulation import Scenario
 
@@ -79,7 +79,7 @@ def run(
     folder.mkdir(parents=True, exist_ok=True)
     chosen, _ = choose_missions(paper, Options(missions=worlds, seed=seed))
     jobs = [(mission.number, step) for mission in chosen for step in STEPS]
-    run_of = {"table": "ladder", "seed": seed, "version": version("ladder", *SOURCES)}
+    run_of = {"table": "ladder", "seed": seed, "version": code_version()}
     run_of |= {"settings": settings} if settings else {}
     work = partial(_row, seed=seed, settings=settings)
     return collect("ladder", work, jobs, folder / "ladder.jsonl", run_of, workers, progress)

@@ -5,6 +5,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from itertools import zip_longest
 from pathlib import Path
+from random import Random
 from typing import TYPE_CHECKING, Any
 
 from dynastar.bench.controllers import controller_named
@@ -37,10 +38,9 @@ def run_all(
 ) -> dict[str, Any]:
     """Runs every suite whose data and extras are here; ``left_out`` says why another was not.
 
-    The controllers ``others`` drive in the same missions, or in each ``every``-th of them, in each suite
-    that drives. Finished rows are
-    kept in ``keep``, and a run that was cut off goes on from there. Raises InputError if no suite can be
-    run.
+    The controllers ``others`` drive in the same missions, or in one of ``every`` of them, in each suite
+    that drives. Finished rows are kept in ``keep``, and a run that was cut off goes on from there. Raises
+    InputError if no suite can be run.
     """
     began = time.perf_counter()
     planned, left_out = _planned(options, others, every)
@@ -91,8 +91,14 @@ def _planned(options: Options, others: Sequence[str], every: int) -> tuple[Plann
         asked = options._replace(controller=controller)
         for name in driving:
             jobs, skipped = jobs_of(name, load_suite(name), asked)
-            planned[controller, name] = jobs[::every], skipped
+            planned[controller, name] = _every(jobs, every), skipped
     return planned, left_out
+
+
+def _every(jobs: list[Job], every: int) -> list[Job]:
+    """One job in so many, drawn: kinds of missions that take turns are all among them."""
+    drawn = Random(0).sample(range(len(jobs)), -(-len(jobs) // every))
+    return [jobs[index] for index in sorted(drawn)]
 
 
 def _in_turn(lists: Sequence[Sequence[Job]]) -> list[Job]:

@@ -14,7 +14,7 @@ from dynastar.bench.optimum import shortest_over_centres, shortest_over_corners
 from dynastar.bench.own_maps import own_forty
 from dynastar.bench.rows import collect
 from dynastar.bench.tables import spread_of
-from dynastar.bench.versions import version
+from dynastar.bench.versions import code_version
 from dynastar.planning import HeuristicConfig, SearchGrid, SearchResult, smooth, straighten
 
 SIZE, LARGE = 40, 512  # cells a side
@@ -75,8 +75,7 @@ def run(
     each = -(-maps // len(KINDS))
     jobs = [(kind, number) for kind in KINDS for number in _numbers(kind, each, seed, size)]
     name = "table1" if size == SIZE else f"table1-{size}"
-    made_by = version("table1", "families", "optimum")
-    settings = {"table": 1, "seed": seed, "size": size, "version": made_by}
+    settings = {"table": 1, "seed": seed, "size": size, "version": code_version()}
     work = partial(_row, seed=seed, size=size)
     return collect(name, work, jobs, folder / f"{name}.jsonl", settings, workers, progress)
 

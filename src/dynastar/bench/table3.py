@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dynastar.bench import paper
-from dynastar.bench.arms import ARMS, BASE, PLAIN_ASTAR, SOURCES, run_mission
+from dynastar.bench.arms import ARMS, BASE, PLAIN_ASTAR, run_mission
 from dynastar.bench.missions import Options
 from dynastar.bench.rows import collect
 from dynastar.bench.selection import choose_missions
-from dynastar.bench.versions import version
+from dynastar.bench.versions import code_version
 from dynastar.grid import OccupancyGrid
 from dynastar.planning import GridPlanner, plan
 from dynastar.simulation import Scenario
@@ -60,7 +60,7 @@ def run(
     folder.mkdir(parents=True, exist_ok=True)
     chosen, _ = choose_missions(paper, Options(missions=missions, seed=seed))
     jobs = [mission.number for mission in chosen]
-    run_of: Row = {"table": 3, "seed": seed, "arm": driver, "version": version("table3", *SOURCES)}
+    run_of: Row = {"table": 3, "seed": seed, "arm": driver, "version": code_version()}
     run_of |= {"settings": settings} if settings else {}
     work = partial(_row, seed=seed, arm=DRIVERS[driver].arm, settings=settings)
     file = folder / f"table3-{driver}.jsonl"

@@ -13,7 +13,7 @@ from dynastar.bench.arms import PLAIN, TERMS
 from dynastar.bench.families import KINDS, Map, draw
 from dynastar.bench.rows import collect
 from dynastar.bench.tables import Cell, Table, spread_of
-from dynastar.bench.versions import version
+from dynastar.bench.versions import code_version
 from dynastar.planning import HeuristicConfig, SearchGrid
 
 ROUNDS = 3  # each arm's best time of so many, in turns
@@ -40,8 +40,7 @@ def run(
     folder.mkdir(parents=True, exist_ok=True)
     each = -(-maps // len(KINDS))
     jobs = [(kind, number) for kind in KINDS for number in _numbers(kind, each, seed, size)]
-    modules = ("terms", "arms", "families")
-    settings = {"table": "terms", "seed": seed, "size": size, "version": version(*modules)}
+    settings = {"table": "terms", "seed": seed, "size": size, "version": code_version()}
     work = partial(_row, seed=seed, size=size)
     return collect("terms", work, jobs, folder / "terms.jsonl", settings, workers, progress)
 

@@ -108,7 +108,7 @@ def _add_missions(parser: argparse.ArgumentParser) -> None:
         "--controller",
         metavar="NAME",
         help="navigator (the default), pure_pursuit, printed, kompass_dwa, orca, or MODULE:CLASS; `all` "
-        "runs all of these (--quick: all but printed, in every sixth mission) unless one is named",
+        "runs all of these (--quick: all but printed, in one mission of six) unless one is named",
     )
     add_set(parser)
     parser.add_argument(
