@@ -17,7 +17,7 @@ from dynastar.bench import (
     presets,
     table1,
     table1_tables,
-    table3,
+    table3_tables,
     targets,
     terms,
 )
@@ -114,7 +114,7 @@ def test_every_table_of_the_experiments_has_its_place_on_the_page():
         "measured",
     }
     for module, name in (
-        (table3, "table3"),
+        (table3_tables, "table3"),
         (clutter, "clutter"),
         (ladder, "ladder"),
         (terms, "terms"),
