@@ -121,6 +121,6 @@ def parts() -> list[Part]:
         paper("clutter", 35),
         Part("scoreboard", 30, ("benchmarks/scoreboard.py",)),
         paper("table3", 80),
-        paper("ladder", 45),
+        paper("ladder", 50),
         paper("ablation", 45, "--worlds", "50"),
     ]

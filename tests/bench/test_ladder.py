@@ -7,11 +7,12 @@ import pytest
 
 from dynastar.bench import arms, ladder, paper
 from dynastar.bench.controllers.printed import Printed, PrintedReplanning
+from dynastar.bench.controllers.printed_cost_to_go import PrintedCostToGo
 from dynastar.bench.settings import merged
 from dynastar.navigator import PRESETS, Navigator, configured
 from dynastar.simulation import drive
 
-LEAST, *NAVIGATORS = list(ladder.STEPS)[2:]
+LEAST, *NAVIGATORS = list(ladder.STEPS)[3:]
 
 
 def settings(step):
@@ -20,8 +21,8 @@ def settings(step):
 
 def test_the_first_steps_are_the_readings_of_the_paper_and_the_last_is_the_default():
     controllers = [arm.controller for arm in ladder.STEPS.values()]
-    assert controllers[:2] == [Printed, PrintedReplanning]
-    assert set(controllers[2:]) == {None}
+    assert controllers[:3] == [Printed, PrintedReplanning, PrintedCostToGo]
+    assert set(controllers[3:]) == {None}
     assert settings("+ people out of unseen space: preset paper") == PRESETS["paper"]
     assert settings(NAVIGATORS[-1]) == PRESETS["default"]
 
@@ -57,7 +58,7 @@ def row(number, step, outcome="arrived", **more):
 
 def test_each_step_is_compared_with_the_one_before():
     rows = [
-        row(n, step, "arrived" if at >= 2 else "blocked")
+        row(n, step, "arrived" if at >= 3 else "blocked")
         for n in range(6)
         for at, step in enumerate(ladder.STEPS)
     ]
@@ -69,7 +70,7 @@ def test_each_step_is_compared_with_the_one_before():
     assert (found[NAVIGATORS[-1]]["lost"], found[NAVIGATORS[-1]]["gained"]) == (1, 0)
     cells = ladder.table(found).cells
     assert cells[1] == ["printed", "0", "0 to 39", "0", "0", "6", "", "", "", "", ""]
-    assert cells[3][1:9] == ["6", "61 to 100", "0", "0", "0", "60.0", "30.0", "0"]
+    assert cells[4][1:9] == ["6", "61 to 100", "0", "0", "0", "60.0", "30.0", "0"]
     ends = ladder.outcomes(found)
     assert ends["late, blocked"]["printed"] == ends["arrived"][LEAST] == 100.0
     assert ends["hit moving"][NAVIGATORS[-1]] == pytest.approx(100.0 / 6)

@@ -9,6 +9,7 @@ from typing import Any
 from dynastar.bench import paper
 from dynastar.bench.arms import Arm, run_mission
 from dynastar.bench.controllers.printed import Printed, PrintedReplanning
+from dynastar.bench.controllers.printed_cost_to_go import PrintedCostToGo
 from dynastar.bench.missions import Options
 from dynastar.bench.pairs import beside, correct, interval_in_words, p_in_words, totals
 from dynastar.bench.rows import collect
@@ -53,6 +54,7 @@ def _steps() -> dict[str, Arm]:
     return {
         "printed": Arm(controller=Printed),
         "printed, replanning, target at 1 m": Arm(controller=PrintedReplanning),
+        "the same, cost-to-go for heading": Arm(controller=PrintedCostToGo),
         **{
             name: Arm(navigator=reduce(merged, left_out[number:], {}))
             for number, name in enumerate(names)

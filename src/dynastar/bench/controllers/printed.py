@@ -280,13 +280,17 @@ class Printed(PathController):
             settings.target or limits.v_max * settings.time,
         )
         terms = Terms(
-            heading(end, path[-1]),
+            self.towards(state, end, path),
             dist(clearance[V_a, steps - 1]),
             v,
             simi(curves, path, settings.stray),
         )
         best = evaluated(terms, settings).argmax()
         return Twist(float(v[best]), float(omega[best]))
+
+    def towards(self, state: RobotState, end: Trajectories, path: Floats) -> Floats:
+        """heading of Eq. 8, to the target at the end of the path."""
+        return heading(end, path[-1])
 
     def _clearance(self, curves: Trajectories) -> Floats:
         """Metres (n, k) from the robot's disc to the nearest obstacle, below 0 in contact."""
