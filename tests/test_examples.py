@@ -53,6 +53,11 @@ def test_programs_run_and_are_short(
     runpy.run_path(str(program), run_name="__main__")
     said = capsys.readouterr().out
     assert "improved" in said or "arrived" in said
+    if program.stem == "10_guard":
+        _, *ends = (tuple(line.split()[-2:]) for line in said.splitlines())
+        assert len(ends) == 6
+        assert sum(alone == "contact" for alone, _ in ends) >= 3
+        assert {guarded for _, guarded in ends} <= {"arrived", "stopped"}
 
 
 def test_the_readme_shows_the_drive_example() -> None:

@@ -45,7 +45,7 @@ class Planners:
         planner: Planner | None = None,
     ) -> None:
         self.planning_map, self.tolerance = planning_map, config.goal_tolerance
-        # A robot may stop up to a cell of its cost-to-go, two of the local map, short of its path.
+        # The robot rests near the end of its path, not on it: two cells are left for that.
         self._roomy_tolerance = max(0.0, self.tolerance - 2.0 * planning_map.lattice[0])
         roomy, tight = radii
         self.by_width = [
