@@ -72,7 +72,7 @@ def test_a_frozen_lidar_is_tried_again_more_and_more_seldom_slowly_and_not_far()
 def test_what_is_tried_is_slow_and_a_speed_that_the_drive_follows(
     v_least, omega_least, asked, slow
 ):
-    limits = ROUND.limits._replace(v_least=v_least, omega_least=omega_least)
+    limits = ROUND.limits._replace(v_least=v_least, omega_least=omega_least, v_brake=0.5)
     drive = under_way(robot=replace(ROUND, limits=limits))
     drive.twist = Twist(0.0, 0.0)
     sensing = drive.navigator.sensing
@@ -86,6 +86,10 @@ def test_what_is_tried_is_slow_and_a_speed_that_the_drive_follows(
     for speed, least in zip(tried, (v_least, omega_least), strict=True):
         assert speed == 0.0 or speed >= least
     assert sensing.on_trial(state, None) is None
+    moving = state._replace(twist=Twist(0.19, 0.0))
+    brake = sensing.robot.limits.v_brake  # less than declared, by the drive's error
+    slower = max(tried.v, 0.19 - brake * sensing.poses.period)
+    assert sensing.on_trial(moving, command).v == pytest.approx(min(slower, command.v))
 
 
 def test_a_robot_whose_wheels_slipped_finds_out_that_its_lidar_is_not_frozen():

@@ -115,7 +115,11 @@ class Sensing:
             return command
         v, omega = abs(command.v), abs(command.omega)
         least = max(_share(limits.v_least, v), _share(limits.omega_least, omega))
-        return slowed(command, Twist(max(TRIAL.v, least * v), max(TRIAL.omega, least * omega)))
+        moved, period = state.twist, self.poses.period
+        low_v = abs(moved.v) - limits.v_brake * period  # lower ones it cannot reach in a period
+        low_omega = abs(moved.omega) - limits.omega_brake * period
+        highest = Twist(max(TRIAL.v, least * v, low_v), max(TRIAL.omega, least * omega, low_omega))
+        return slowed(command, highest)
 
     def update(
         self, state: RobotState, scans: Sequence[LaserScan], trusts_map: bool = False
