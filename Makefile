@@ -92,6 +92,7 @@ demo: setup
 	@$(BIN)/dynastar demo --out out/demo
 
 results: setup
+	@$(BIN)/python -c "import jupedsim, kompass_core" 2>/dev/null || \
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[kompass,pedestrians]"
 	$(BIN)/python benchmarks/results.py
 

@@ -7,8 +7,8 @@
     python benchmarks/results.py --data DIR --missions 2   # a trial, which is never written into pages
 
 Results are in out/results, one JSON a part; with the pages they are kept in docs/measured, from where
-another clone takes them. A part is done if its result is of the sources (`src`) of HEAD; one that was cut
-off goes on where it ended.
+another clone takes them. A part is done if its result is of its command on the sources (`src`) of HEAD;
+one that was cut off goes on where it ended.
 """
 
 import argparse

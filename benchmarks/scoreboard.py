@@ -1,6 +1,6 @@
 """Runs the missions of `dynastar bench all --quick`, but of a report seed: for published tables only.
 
-The other controllers drive every second one, there every sixth.
+The other controllers drive half of them, there one of six, drawn at random.
 
 python benchmarks/scoreboard.py --seed 10000 --json-out all.json
 """

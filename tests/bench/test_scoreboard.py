@@ -106,6 +106,9 @@ def test_other_controllers_drive_in_the_same_missions(suites, monkeypatch, tmp_p
     fewer = scoreboard.run_all(Options(), others=("pure_pursuit",), every=2)
     assert fewer["others"]["pure_pursuit"]["first"]["missions"] == 3
     assert fewer["suites"] == result["suites"]
+    numbers = [row["number"] for row in fewer["others"]["pure_pursuit"]["first"]["rows"]]
+    assert numbers == sorted(set(numbers))
+    assert numbers not in ([0, 2, 4], [1, 3, 5])
     save(scoreboard.picture(result), tmp_path / "all.png")
 
 

@@ -66,6 +66,9 @@ def test_what_is_done_is_left_out_until_the_sources_change(tmp_path, runs, capsy
     assert runs[4:] == ["barn"]
     results.measure_all(asked[::2], tmp_path, NOW, None)
     assert runs[5:] == ["barn", "mrpb"]
+    other = PARTS["barn"]._replace(command=(*PARTS["barn"].command, "--missions", "3"))
+    results.measure_all([other], tmp_path, NOW, None)
+    assert runs[7:] == ["barn"]
     record = results.read_record(tmp_path)
     assert record["barn"]["commit"] == "abc1234"
     assert record["maps"]["commit"] == "0123456"

@@ -108,7 +108,7 @@ def test_beams_that_are_further_apart_than_declared_are_found(tmp_path):
     half = replace(ROBOT, lidar=Lidar(360, math.pi, 0.1, 10.0))  # as many, over half of the angle
     one = findings(Made().write(tmp_path / "bag"), robot=half)["recorded readings"]
     assert one.level == "problem"
-    assert "declare beams = 360 and fov = 6.26" in one.words()
+    assert "declare beams = 360, fov = 6.26" in one.words()
 
 
 def gap(first, last):

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 import yaml
 
+from dynastar.cli.robots import robot_arguments
 from dynastar.config import checked
-from dynastar.errors import InputError
+from dynastar.errors import ConfigError, InputError
 from dynastar.geometry import Goal, Pose2D, Twist
 from dynastar.io import load_scenario
 from dynastar.navigator import configured
@@ -205,6 +206,31 @@ def test_a_scenario_tells_the_node_all_of_its_robot():
     made = robot_of(ROBOTS[own.robot], scenario.robot.limits, own)
     assert made.lidar == scenario.robot.lidar
     assert made.footprint.vertices == pytest.approx(scenario.robot.footprint.vertices)
+
+
+def test_a_robots_file_tells_a_node_what_it_declares_and_leaves_the_mount_to_tf(tmp_path):
+    def told(text, own_period=False):
+        file = tmp_path / "mine.toml"
+        file.write_text(text)
+        words = robot_arguments(str(file), own_period)
+        return dict(word.split(":=") for word in words[2::2])
+
+    settings = "[navigator]\nperiod = 0.12\nscan_age = 0.45\nlatency = 0.15\n"
+    plain = told(f'[robot]\nbase = "turtlebot3_burger"\n[sensor]\nbeams = 180\n{settings}')
+    assert "laser_pose" not in plain
+    assert (plain["laser_beams"], plain["latency"], plain["period"]) == ("180", "0.15", "0.12")
+    assert plain["data_age"] == plain["scan_age"] == "0.45"
+    mounted = told('[robot]\nbase = "jackal"\n[sensor]\nx = 0.2\n[navigator]\nperiod = 0.12', True)
+    assert mounted["laser_pose"] == "[0.2, 0.0, 0.0]"
+    assert "period" not in mounted
+    assert "data_age" not in mounted
+
+
+@pytest.mark.parametrize("laser_range", [(0.1,), (5.0, 0.1), (0.1, 0.2, 3.0)])
+def test_a_range_of_the_lidar_that_cannot_be_is_refused(laser_range):
+    burger = ROBOTS["turtlebot3_burger"]
+    with pytest.raises(ConfigError):
+        robot_of(burger, burger.limits, NodeSettings(laser_range=laser_range))
 
 
 def test_the_readings_that_mean_no_return_are_the_robots_and_are_recorded():

@@ -96,7 +96,7 @@ def _planned(options: Options, others: Sequence[str], every: int) -> tuple[Plann
 
 
 def _every(jobs: list[Job], every: int) -> list[Job]:
-    """One job in so many, drawn: kinds of missions that take turns are all among them."""
+    """One job in so many, drawn, so that kinds of missions which take turns are not left out."""
     drawn = Random(0).sample(range(len(jobs)), -(-len(jobs) // every))
     return [jobs[index] for index in sorted(drawn)]
 

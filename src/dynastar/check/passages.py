@@ -16,7 +16,7 @@ Cells = npt.NDArray[np.int64]
 OFF_CENTRE = math.sqrt(
     2.0
 )  # cells by which a gap is wider than twice the clearance of its best cell
-WIDER = 0.5  # cells by which the clearance in a region is larger than in its passage: a cell wider
+WIDER = 0.5  # cells of clearance that a region has more than its passage: it is 1 or 2 cells wider
 STEPS = ((0, 1), (1, 0), (1, 1), (1, -1))  # to half of a cell's neighbours
 
 
@@ -132,7 +132,7 @@ def _edges(clearance: Floats, basin: Cells) -> _Edges:
 def _joined(edges: _Edges, peaks: Floats, sizes: Cells, least: float) -> list[tuple[int, int]]:
     """The cells (flat) that join two large regions, each with the cells of the smaller of them.
 
-    A region is large if it has ``least`` cells and is a cell wider than the place.
+    A region is large if it has ``least`` cells and is wider than the place.
     """
     parent, peak, size = list(range(len(peaks))), peaks.tolist(), sizes.tolist()
 

@@ -94,12 +94,11 @@ def readings(recording: Recording, robot: Robot) -> Finding:
         f"{lidar.range_min:g} to {lidar.range_max:g} m."
     )
     wrong = []
-    if least < (1.0 - TOLERANCE) * lidar.beams:
+    apart = fov > (1.0 + TOLERANCE) * lidar.increment * max(least - 1, 1)
+    if apart or least < (1.0 - TOLERANCE) * lidar.beams:
         wrong.append(f"beams = {least}")
-    if fov < (1.0 - TOLERANCE) * declared:
+    if apart or fov < (1.0 - TOLERANCE) * declared:
         wrong.append(f"fov = {at_most(fov, 4)}")
-    if not wrong and fov > (1.0 + TOLERANCE) * lidar.increment * max(beams - 1, 1):
-        wrong.append(f"beams = {beams} and fov = {at_most(fov, 4)}")  # further apart than declared
     if high < (1.0 - TOLERANCE) * lidar.range_max:
         wrong.append(f"range_max = {high:g}")
     if low > lidar.range_min + TOLERANCE:

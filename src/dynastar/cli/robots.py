@@ -9,11 +9,19 @@ from dynastar.navigator import NavigatorConfig
 from dynastar.robot import ROBOTS, Robot
 
 
-def robot_arguments(name: str | None) -> list[str]:
-    """ROS arguments that give a node the robot that ``--robot`` names; none without it."""
+def robot_arguments(name: str | None, own_period: bool = False) -> list[str]:
+    """ROS arguments that give a node the robot that ``--robot`` names; none without it.
+
+    With ``own_period`` the period stays the node's.
+    """
     from dynastar.ros.settings import ros_arguments
 
-    return [] if name is None else ros_arguments(*named_robot(name))
+    if name is None:
+        return []
+    robot, config = named_robot(name)
+    if own_period:
+        config = config._replace(period=NavigatorConfig().period)
+    return ros_arguments(robot, config)
 
 
 def named_robot(name: str) -> tuple[Robot, NavigatorConfig]:

@@ -28,7 +28,7 @@ def execute(arguments: argparse.Namespace) -> int:
     from dynastar.cli.compiling import prepare
     from dynastar.cli.robots import robot_arguments
 
-    given = robot_arguments(arguments.robot)
+    given = robot_arguments(arguments.robot, own_period=True)
     require("ros", "ROS 2 nodes need")
     prepare()
     from dynastar.ros.main import guard

@@ -114,12 +114,14 @@ class Sensing:
         if command is None or is_fast or not self.feed.in_trouble:
             return command
         v, omega = abs(command.v), abs(command.omega)
-        least = max(_share(limits.v_least, v), _share(limits.omega_least, omega))
-        moved, period = state.twist, self.poses.period
-        low_v = abs(moved.v) - limits.v_brake * period  # lower ones it cannot reach in a period
-        low_omega = abs(moved.omega) - limits.omega_brake * period
-        highest = Twist(max(TRIAL.v, least * v, low_v), max(TRIAL.omega, least * omega, low_omega))
-        return slowed(command, highest)
+        braked = limits.v_brake * self.poses.period, limits.omega_brake * self.poses.period
+        share = max(
+            _share(limits.v_least, v),
+            _share(limits.omega_least, omega),
+            _share(abs(state.twist.v) - braked[0], v),  # slower than it can be after a period
+            _share(abs(state.twist.omega) - braked[1], omega),
+        )
+        return slowed(command, Twist(max(TRIAL.v, share * v), max(TRIAL.omega, share * omega)))
 
     def update(
         self, state: RobotState, scans: Sequence[LaserScan], trusts_map: bool = False

@@ -160,8 +160,12 @@ def _yaml(value: Any) -> str:
 
 
 def _parameters(robot: Robot, config: NavigatorConfig, preset: Preset) -> dict[str, Any]:
-    """The node's parameters that differ from its defaults, and all that tells of the robot."""
-    found: dict[str, Any] = {"robot": robot.name if robot.name in ROBOTS else next(iter(ROBOTS))}
+    """The node's parameters that differ from its defaults, and all that tells of the robot.
+
+    The lidar's mount is left to tf unless the robot has another one than the built-in robot.
+    """
+    base = robot.name if robot.name in ROBOTS else next(iter(ROBOTS))
+    found: dict[str, Any] = {"robot": base}
     found["preset"], usual = preset, flat(configured(preset))
     found |= {name: value for name, value in flat(config).items() if value != usual[name]}
     found |= {f"limits.{name}": value for name, value in robot.limits._asdict().items()}
@@ -170,7 +174,10 @@ def _parameters(robot: Robot, config: NavigatorConfig, preset: Preset) -> dict[s
     else:
         found["polygon"] = [float(value) for value in robot.footprint.vertices.reshape(-1)]
     lidar = robot.lidar
-    found["laser_pose"] = [float(value) for value in lidar.mount]
+    if lidar.mount != ROBOTS[base].lidar.mount:
+        found["laser_pose"] = [float(value) for value in lidar.mount]
+    if "scan_age" in found:
+        found["data_age"] = max(NodeSettings().data_age, config.scan_age)
     found |= {"laser_beams": lidar.beams, "laser_fov": float(lidar.fov)}
     found["laser_range"] = [float(lidar.range_min), float(lidar.range_max)]
     if lidar.nothing:

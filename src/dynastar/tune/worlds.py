@@ -123,7 +123,7 @@ def _drawn(name: str, declared: str, seed: int, number: int) -> tuple[Scenario, 
     faults = read_scenario({**NOWHERE, "robot": "paper", **table["faults"]}, Path(), name)
     return replace(
         scenario,
-        noise=Noise(range_bound=navigator["range_error"]),
+        noise=Noise(max(0.0, navigator["range_error"] - 0.5 * faults.lidar.rounding)),
         latency=navigator["latency"],
         navigator=navigator,
         **{key: getattr(faults, key) for key in FAULTS},
