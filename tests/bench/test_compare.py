@@ -67,6 +67,22 @@ def test_then_time_decides(by, word):
     assert verdict((0, 0, 5), 1.0, fewer).startswith("no difference")
 
 
+@pytest.mark.parametrize(
+    ("lost", "gained", "by", "word"),
+    [
+        (5, 1, -1.0, "undecided"),
+        (1, 5, -1.0, "better"),
+        (1, 5, 1.0, "undecided"),
+        (5, 1, 1.0, "worse"),
+    ],
+)
+def test_time_does_not_outweigh_success_that_points_the_other_way(lost, gained, by, word):
+    said = verdict((lost, gained, 40), 0.22, {"mean": by, "interval": (by, by), "pairs": 34})
+    assert said.startswith(word)
+    if word == "undecided":
+        assert f"{gained} missions gained, {lost} lost" in said
+
+
 def test_a_contact_is_no_success_and_a_right_word_is_one():
     first = result(["arrived", "blocked_rightly"])
     second = result(["arrived", "blocked"])

@@ -5,7 +5,8 @@ The verdict on a suite, in words, follows a rule:
 1. Success is an arrival (or a right word that there is no way) without contact. If McNemar's exact test
    on the missions that only one of both succeeded in has p < 0.05, the one with more is better.
 2. Otherwise, if both arrived in at least ``FEWEST`` missions and the 95 % bootstrap interval of the mean
-   difference of their times leaves out 0, the faster one is better.
+   difference of their times leaves out 0, the faster one is better, unless it succeeded in fewer: a gain
+   in time may be one of risk.
 3. Otherwise the difference may be chance, and the number of missions is told that would show a
    difference of that size.
 
@@ -141,7 +142,10 @@ def verdict(counts: tuple[int, int, int], p: float, time: Mapping[str, Any]) -> 
     interval = time["interval"]
     if time["pairs"] >= FEWEST and interval is not None and not interval[0] <= 0.0 <= interval[1]:
         word, how = ("better", "faster") if time["mean"] < 0.0 else ("worse", "slower")
-        return f"{word}: {abs(time['mean']):.2f} s {how} on average, success alike (p = {p:.2g})"
+        differ = f"{abs(time['mean']):.2f} s {how} on average"
+        if (lost > gained) if word == "better" else (gained > lost):
+            return f"undecided: {differ}, but {changed}"
+        return f"{word}: {differ}, success alike (p = {p:.2g})"
     needed = pairs_needed(lost, gained, missions)
     if needed is None:
         return f"no difference: {changed}"
