@@ -45,12 +45,8 @@ NOWHERE: Mapping[str, Any] = {"map": {"rows": ["."]}, "start": [0.5, 0.5, 0.0], 
 OF_A_PLACE = {
     *NOWHERE, "goals", "world", "keepout", "speed_limit", "obstacles", "movers",
 }  # fmt: skip
-FAULTS = (
-    "drive",
-    "odometry",
-    "lidar",
-    "loop",
-)  # tables of what a robot does otherwise than declared
+# Tables of what a robot does otherwise than declared.
+FAULTS = "drive", "odometry", "lidar", "loop"
 
 
 def load_scenario(path: str | Path) -> Scenario:

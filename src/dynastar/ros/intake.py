@@ -47,9 +47,8 @@ class Intake(ABC):
         self._layers: dict[str, OccupancyGrid] = {}  # the newest map and masks
         self._scan: LaserScan | None = None
         self._new_scans: list[LaserScan] = []  # since the last tick
-        self._assumed: set[str] = (
-            set()
-        )  # frames of lidars that are taken to be where one is built in
+        # Frames of lidars that are taken to be where one is built in.
+        self._assumed: set[str] = set()
         self._now = self._at = -math.inf  # the clock, and the time of the last state
 
     # -- what comes in ----------------------------------------------------------------------------

@@ -101,9 +101,7 @@ def drive(
             status = controller.status
             if world.time == 0.0 and status.error is not None:
                 status = _explained(status, scenario)
-            if (
-                world.time == 0.0 and status.state == "sensor_lost"
-            ):  # a lidar in a wall sees nothing
+            if world.time == 0.0 and status.state == "sensor_lost":  # in a wall it sees nothing
                 _check_start(scenario)
             recorder.tick(command, command_ms, status)
             if tracer is not None:
