@@ -1,6 +1,8 @@
+import ast
 import os
 import subprocess
 import sys
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -65,6 +67,7 @@ def test_the_folder_is_named_after_the_sources_and_where_they_are(tmp_path, monk
     "text",
     [
         "from dynastar.compiled import inner\n\n@inner\n",
+        "from dynastar.compiled import allocating\n\n@allocating\n",
         "class Body(NamedTuple):\n    radius: float\n",
     ],
 )
@@ -91,6 +94,38 @@ def test_kernels_that_tests_can_call_have_a_folder_of_their_own(tmp_path, monkey
     before = compiled.digest()
     monkeypatch.setattr(compiled, "CALLABLE", not compiled.CALLABLE)
     assert compiled.digest() != before
+
+
+def as_it_is(values):
+    return values
+
+
+def beside_a_number(values):
+    return 1.0, (values, 2.0)
+
+
+@pytest.mark.parametrize("function", [as_it_is, beside_a_number])
+def test_an_inner_kernel_that_returns_an_array_is_refused(function):
+    kernel = compiled.njit()(function)
+    assert kernel(np.zeros(2)) is not None
+    with pytest.raises(TypeError, match=f"{function.__name__} returns an array"):
+        compiled.inner(function)(np.zeros(2))
+
+
+def test_no_inner_kernel_calls_one_that_makes_arrays():
+    """Nobody would free them; numba itself refuses inner kernels that make arrays."""
+    kinds, calls = {}, {}
+    for source in sorted(Path(compiled.__file__).parent.rglob("*.py")):
+        for node in ast.parse(source.read_text()).body:
+            if isinstance(node, ast.FunctionDef) and node.decorator_list:
+                kinds[node.name] = ast.unparse(node.decorator_list[0]).split("(")[0]
+                called = [n.func for n in ast.walk(node) if isinstance(n, ast.Call)]
+                calls[node.name] = {ast.unparse(name).split(".")[-1] for name in called}
+    inner = {name for name, kind in kinds.items() if kind == "inner"}
+    making = {name for name, kind in kinds.items() if kind == "allocating"}
+    assert len(inner) > 50
+    assert len(making) > 5
+    assert [(a, b) for a in inner for b in calls[a] & making] == []
 
 
 def test_importing_dynastar_imports_nothing_heavy():

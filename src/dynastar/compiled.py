@@ -19,7 +19,8 @@ from pathlib import Path
 from typing import Any, get_type_hints
 
 ROOM = "dynastar"  # in the user's cache
-IN_KERNELS = b"njit", b"@inner", b"NamedTuple"  # in a source of kernels or of what they take
+# In a source of kernels or of what they take.
+IN_KERNELS = b"njit", b"@inner", b"@allocating", b"NamedTuple"
 CALLABLE = bool(os.environ.get("DYNASTAR_CALLABLE_KERNELS"))  # for tests: ``inner`` is ``njit``
 
 
@@ -102,6 +103,7 @@ from numba.extending import intrinsic  # noqa: E402
 config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
 
 __all__ = [
+    "allocating",
     "caches",
     "clear",
     "digest",
@@ -150,14 +152,39 @@ def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
 
 
 def inner(function: Callable[..., Any]) -> Any:
-    """Decorate a kernel that only other kernels call: it has no wrapper for Python.
+    """Decorate a kernel that only other kernels call, and that neither makes nor returns arrays.
 
-    Compiling takes about a fifth less time without the wrappers. Python code must not call such a
-    kernel: numba would crash. Tests set ``DYNASTAR_CALLABLE_KERNELS`` to call them all the same.
+    It has no wrapper for Python, and numba counts no references to the arrays that it reads: that
+    counting takes more than half of the time of roll-outs. Python code must not call such a kernel:
+    numba would crash. Tests set ``DYNASTAR_CALLABLE_KERNELS`` to call them all the same.
     """
-    return njit(cache=True, no_cpython_wrapper=not CALLABLE, no_cfunc_wrapper=not CALLABLE)(
-        function
-    )
+    kernel = _unwrapped(function, counts_references=False)
+    add_overload = kernel.add_overload
+
+    def checked(compiled: Any) -> None:
+        if _holds_array(compiled.signature.return_type):
+            raise TypeError(f"{function.__qualname__} returns an array: expected @allocating")
+        add_overload(compiled)
+
+    kernel.add_overload = checked
+    return kernel
+
+
+def allocating(function: Callable[..., Any]) -> Any:
+    """As ``inner``, for a kernel that makes or returns arrays, or calls one that does."""
+    return _unwrapped(function, counts_references=True)
+
+
+def _unwrapped(function: Callable[..., Any], counts_references: bool) -> Any:
+    wrappers = {"no_cpython_wrapper": not CALLABLE, "no_cfunc_wrapper": not CALLABLE}
+    return njit(cache=True, **wrappers, _nrt=counts_references)(function)
+
+
+def _holds_array(kind: Any) -> bool:
+    """Whether a numba type is an array, or a tuple with one in it."""
+    if isinstance(kind, types.BaseTuple):
+        return any(map(_holds_array, kind))
+    return isinstance(kind, types.Array)
 
 
 def record(fields: type) -> np.dtype[Any]:

@@ -7,7 +7,7 @@ last, and following the cost-to-go at once.
 
 import numpy as np
 
-from dynastar.compiled import inner, njit
+from dynastar.compiled import allocating, inner, njit
 from dynastar.dwa.admissible import ADMISSIBLE, MOVING, refusal
 from dynastar.dwa.clearance import least_clearance
 from dynastar.dwa.motion import command_towards, driveable_sample, stopping_time
@@ -53,7 +53,7 @@ def search(scene, rules, state, stops_from, candidates, rows):
     return n, best
 
 
-@inner
+@allocating
 def fill_candidates(scene, rules, start, candidates):
     """Write speeds, holds and the commands of one period; returns the number of candidates."""
     limits, config, last, state = rules.limits, rules.config, scene.last, start.state

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynastar.compiled import inner
+from dynastar.compiled import allocating, inner
 from dynastar.dwa.motion import slew
 
 
@@ -36,7 +36,7 @@ def reachable(state, limits, possible, duration):
     return Window(min(slower, faster), max(slower, faster), min(right, left), max(right, left))
 
 
-@inner
+@allocating
 def spaced(low, high, count):
     """About ``count`` values from low to high, both among them.
 

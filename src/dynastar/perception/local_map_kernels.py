@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from dynastar.compiled import inner, njit, record
+from dynastar.compiled import allocating, njit, record
 
 NEVER = -1e18
 FREE_FOR = 1.0  # s that a cell is seen free before its earlier hits are forgotten
@@ -22,7 +22,7 @@ class HitBox:
 BOX = record(HitBox)
 
 
-@inner
+@allocating
 def crossings(gaps, first, increment, side):
     """Where beams cross a row 1 m above (side 1) or below (-1) the sensor, from left to right.
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from dynastar.compiled import inner, njit, record
+from dynastar.compiled import allocating, inner, njit, record
 from dynastar.perception.detection import (
     FREE_FRACTION,
     MAPPED,
@@ -102,7 +102,7 @@ def update(tracks, groups, points, sensor, space, config, dt):
                 mark_moving(points, track, groups[track.group])
 
 
-@inner
+@allocating
 def associate(tracks, groups, now):
     """Give each track the group within its gate, nearest pairs first.
 

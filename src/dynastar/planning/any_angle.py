@@ -10,14 +10,14 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.compiled import inner, njit
+from dynastar.compiled import allocating, njit
 from dynastar.planning.segments import Bytes, is_clear, mask_bytes
 from dynastar.planning.smoothing import Points, polyline_length
 
 CORRIDOR = 3  # cells to either side of a way
 
 
-@inner
+@allocating
 def fitting_centres(
     blocked: Bytes, points: Points, radius: float, reach: int
 ) -> npt.NDArray[np.float64]:

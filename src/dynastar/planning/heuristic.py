@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Annotated, Literal, NamedTuple
 
 from dynastar.config import Field, self_checking
@@ -46,6 +47,12 @@ PLANNERS: dict[str, Callable[[HeuristicConfig], HeuristicConfig]] = {
     "weighted": lambda c: c._replace(exponential=False, parent=False, k=0.0),
     "improved": lambda c: c._replace(weight=1.0),
 }
+
+
+@lru_cache
+def terms_of(planner: str, config: HeuristicConfig) -> HeuristicConfig:
+    """What a planner leaves of ``config``; checking settings takes longer than a short search."""
+    return PLANNERS[planner](config)
 
 
 def kernel_terms(

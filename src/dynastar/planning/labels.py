@@ -12,7 +12,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.compiled import inner, njit
+from dynastar.compiled import allocating, njit
 from dynastar.planning.neighbours import COLUMN_STEP, NO_DIRECTION, ROW_STEP
 
 Ints = npt.NDArray[np.int64]
@@ -32,7 +32,7 @@ def octile(rows: int, columns: int) -> int:
     return STRAIGHT * max(rows, columns) + (DIAGONAL - STRAIGHT) * min(rows, columns)
 
 
-@inner
+@allocating
 def with_room(array: Ints, needed: int) -> Ints:
     """Return ``array``, grown by 50 % (or to ``needed``) if its size is less than ``needed``."""
     if needed <= array.size:

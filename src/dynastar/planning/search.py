@@ -11,7 +11,7 @@ from dynastar.errors import GoalOccupied, MapError, NoPath, OutOfMap, StartOccup
 from dynastar.planning import bucket_kernel, heap_kernel, jump_kernel, labels
 from dynastar.planning.bounds import check_window
 from dynastar.planning.goal_tree import GoalTree
-from dynastar.planning.heuristic import PLANNERS, HeuristicConfig, kernel_terms
+from dynastar.planning.heuristic import PLANNERS, HeuristicConfig, kernel_terms, terms_of
 from dynastar.planning.neighbours import count_turns, find_near
 
 Cells = npt.NDArray[np.int32]
@@ -186,7 +186,7 @@ class SearchGrid:
             raise StartOccupied(f"the start, cell {start}, is occupied: expected a free cell")
         if not self.is_free(goal):
             raise GoalOccupied(f"the goal, cell {goal}, is occupied: expected a free cell")
-        terms = heuristic or HeuristicConfig()
+        terms = heuristic or _DEFAULTS
         from_goal = False
         if algorithm == "auto":
             algorithm = "jump" if self._prefers_jumps() else "astar"
@@ -205,7 +205,7 @@ class SearchGrid:
     def flood(self, start_rc: Cell) -> npt.NDArray[np.float64]:
         """Lengths in cells, [rows, columns], of the shortest ways from a cell; inf if none."""
         start = self._inside(start_rc, "start")
-        self._run(start, None, "dijkstra", HeuristicConfig())
+        self._run(start, None, "dijkstra", _DEFAULTS)
         nodes, lengths = self._closed(), np.full(self._near.size, np.inf)
         lengths[nodes] = (self._labels[nodes] >> labels.G_SHIFT) / labels.STRAIGHT
         return lengths.reshape(self._near.shape)[1:-1, 1:-1]
@@ -240,7 +240,7 @@ class SearchGrid:
                 near, *self.lines, *where, self._pool, self._nodes
             )
             return found, expanded
-        terms = PLANNERS[algorithm](heuristic)
+        terms = terms_of(algorithm, heuristic)
         if algorithm in ("dijkstra", "astar") and terms.estimate == "octile":
             found, expanded, self._pool = bucket_kernel.shortest(
                 near, *where, terms.weight > 0.0, self._heads, self._pool
@@ -297,4 +297,5 @@ class SearchGrid:
         return row, column
 
 
+_DEFAULTS = HeuristicConfig()
 _NO_SUMS = np.zeros((1, 1), np.int32)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.compiled import inner, njit
+from dynastar.compiled import allocating, inner, njit
 from dynastar.planning.segments import Bytes, is_clear, mask_bytes, norm
 from dynastar.planning.taut_kernel import pulled_bend
 
@@ -71,7 +71,7 @@ def leave_out(
     return count
 
 
-@inner
+@allocating
 def pull_taut(blocked: Bytes, points: Points, radius: float) -> Points:
     """Pull every corner, round after round, until none gets shorter.
 
@@ -123,7 +123,7 @@ def pull_taut(blocked: Bytes, points: Points, radius: float) -> Points:
     return line[:n].copy()
 
 
-@inner
+@allocating
 def join_close(blocked: Bytes, points: Points, radius: float) -> Points:
     """Replace two corners closer than ``FINEST`` by the one where the lines to them meet, if clear."""
     line = points.copy()
@@ -158,7 +158,7 @@ def join_close(blocked: Bytes, points: Points, radius: float) -> Points:
     return line[:count].copy()
 
 
-@inner
+@allocating
 def bevel(blocked: Bytes, points: Points, radius: float, largest: float) -> Points:
     """Cut every corner once, up to ``largest`` cells from it, as far as the disc can follow."""
     result = np.empty((2 * len(points), 2))

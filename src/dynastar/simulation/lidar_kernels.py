@@ -5,7 +5,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.compiled import inner, njit
+from dynastar.compiled import allocating, inner, njit
 
 Floats = npt.NDArray[np.float64]
 
@@ -72,7 +72,7 @@ def disc_hit(x: float, y: float, dx: float, dy: float, disc: Floats) -> float:
     return math.inf
 
 
-@inner
+@allocating
 def near_edges(edges: Floats, x: float, y: float, range_max: float) -> npt.NDArray[np.int64]:
     """Numbers of the edges (k, 4) that a beam of ``range_max`` m from (x, y) may hit.
 
@@ -91,7 +91,7 @@ def near_edges(edges: Floats, x: float, y: float, range_max: float) -> npt.NDArr
     return near[:n]
 
 
-@inner
+@allocating
 def near_discs(discs: Floats, x: float, y: float, range_max: float) -> npt.NDArray[np.int64]:
     """Numbers of the discs (m, 3) that a beam of ``range_max`` m from (x, y) may hit."""
     near = np.empty(len(discs), np.int64)

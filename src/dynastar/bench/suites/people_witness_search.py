@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.bench.suites.people_witness_kernels import Step, drive_clear, duration
-from dynastar.compiled import inner, njit
+from dynastar.compiled import allocating, inner, njit
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -37,7 +37,7 @@ class Tree(NamedTuple):
     queue: Ints
 
 
-@inner
+@allocating
 def find_rests(task):
     """The rests at all nodes; during a rest nobody comes nearer to the node than ``needs.person``."""
     rows, columns = task.space.to_go.shape
@@ -147,7 +147,7 @@ def make_states(this, step, task, rests, tree, count):
     return count, lowest
 
 
-@inner
+@allocating
 def legs_to(found, tree):
     """The legs (n, 5) that led to a state, in order; (0, 5) for state -1."""
     n, at = 0, found
