@@ -115,6 +115,14 @@ def test_all_that_is_recorded_is_of_one_commit():
         assert len({part[key] for part in RECORD.values()}) <= 1
 
 
+def test_all_pages_name_the_same_commit():
+    """Those that `make results` writes, and those whose figures come from other commands."""
+    named = {part["commit"] for part in RECORD.values()}
+    for page in (ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))):
+        named.update(re.findall(r"Measured on commit (\w+)", page.read_text(encoding="utf-8")))
+    assert len(named) == 1
+
+
 @pytest.mark.parametrize("page", pages.PAGES)
 def test_the_top_of_a_page_agrees_with_the_record(page):
     document = (ROOT / page).read_text(encoding="utf-8")
