@@ -1,8 +1,6 @@
-import ast
 import os
 import subprocess
 import sys
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -104,28 +102,21 @@ def beside_a_number(values):
     return 1.0, (values, 2.0)
 
 
-@pytest.mark.parametrize("function", [as_it_is, beside_a_number])
-def test_an_inner_kernel_that_returns_an_array_is_refused(function):
-    kernel = compiled.njit()(function)
-    assert kernel(np.zeros(2)) is not None
-    with pytest.raises(TypeError, match=f"{function.__name__} returns an array"):
+@compiled.njit()
+def doubled(values):
+    return 2.0 * values
+
+
+def first_of_doubled(values):
+    return doubled(values)[0]
+
+
+@pytest.mark.parametrize("function", [as_it_is, beside_a_number, first_of_doubled])
+def test_an_inner_kernel_that_returns_an_array_or_is_given_one_by_a_kernel_is_refused(function):
+    """Nobody would free the array; numba itself refuses inner kernels that make one."""
+    compiled.njit()(function)(np.zeros(2))
+    with pytest.raises(TypeError, match=f"{function.__name__} returns an array, or calls"):
         compiled.inner(function)(np.zeros(2))
-
-
-def test_no_inner_kernel_calls_one_that_makes_arrays():
-    """Nobody would free them; numba itself refuses inner kernels that make arrays."""
-    kinds, calls = {}, {}
-    for source in sorted(Path(compiled.__file__).parent.rglob("*.py")):
-        for node in ast.parse(source.read_text()).body:
-            if isinstance(node, ast.FunctionDef) and node.decorator_list:
-                kinds[node.name] = ast.unparse(node.decorator_list[0]).split("(")[0]
-                called = [n.func for n in ast.walk(node) if isinstance(n, ast.Call)]
-                calls[node.name] = {ast.unparse(name).split(".")[-1] for name in called}
-    inner = {name for name, kind in kinds.items() if kind == "inner"}
-    making = {name for name, kind in kinds.items() if kind == "allocating"}
-    assert len(inner) > 50
-    assert len(making) > 5
-    assert [(a, b) for a in inner for b in calls[a] & making] == []
 
 
 def test_importing_dynastar_imports_nothing_heavy():

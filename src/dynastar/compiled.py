@@ -98,6 +98,7 @@ import numba  # noqa: E402
 import numpy as np  # noqa: E402
 from numba import config, types  # noqa: E402
 from numba.core.caching import IndexDataCacheFile  # noqa: E402
+from numba.core.ir import Expr  # noqa: E402
 from numba.extending import intrinsic  # noqa: E402
 
 config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
@@ -162,8 +163,17 @@ def inner(function: Callable[..., Any]) -> Any:
     add_overload = kernel.add_overload
 
     def checked(compiled: Any) -> None:
-        if _holds_array(compiled.signature.return_type):
-            raise TypeError(f"{function.__qualname__} returns an array: expected @allocating")
+        kinds, calls = compiled.fndesc.typemap or {}, compiled.fndesc.calltypes or {}
+        returned = [compiled.signature.return_type]
+        for call, signature in calls.items():
+            is_call = isinstance(call, Expr) and call.op == "call"
+            if is_call and isinstance(kinds[call.func.name], types.Dispatcher):
+                returned.append(signature.return_type)
+        if any(map(_holds_array, returned)):
+            name = function.__qualname__
+            raise TypeError(
+                f"{name} returns an array, or calls a kernel that does: use @allocating"
+            )
         add_overload(compiled)
 
     kernel.add_overload = checked

@@ -101,9 +101,8 @@ class SearchGrid:
         """Summed-area table [rows + 1, columns + 1]: counted in the first i rows, j columns."""
         if self._sums is None or self._recounts:
             counted = self.occupied.view(np.uint8) if self._counted is None else self._counted
-            self._sums = cv2.integral(
-                counted, self._sums, sdepth=cv2.CV_32S
-            )  # fresh memory is slow
+            # Into the same memory: fresh memory is slow.
+            self._sums = cv2.integral(counted, self._sums, sdepth=cv2.CV_32S)
             self._recounts = False
         return self._sums
 
