@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dynastar.dwa import DynamicWindow
-from dynastar.dwa.admissible import ADMISSIBLE, MOVING, certified_stop, rests_in_time
+from dynastar.dwa.admissible import ADMISSIBLE, MOVING, NO_STOP, certified_stop, rests_in_time
 from dynastar.dwa.clearance import least_clearance
 from dynastar.dwa.config import DwaConfig, Weights
 from dynastar.dwa.dwa import TERMS, StopStart
@@ -269,9 +269,7 @@ def slow_choice(rules, state, scene, choice):
             slew(state.v, v, limits.v_accel, limits.v_brake, PERIOD),
             slew(state.omega, omega, limits.omega_accel, limits.omega_brake, PERIOD),
         )
-        code = certified_stop(scene.around, rules, state, command, PERIOD)
-        if code == ADMISSIBLE:
-            code = rests_in_time(scene.around, rules, state, command)
+        code = rests_in_time(scene.around, rules, state, command)
         short = schedule.held * schedule.period
         kinds = [(short, tail) for tail in (FOLLOW, STOP, BACK)]
         if abs(v) >= 0.1 * limits.v_max and abs(omega) <= 2.0:
@@ -296,7 +294,8 @@ def slow_choice(rules, state, scene, choice):
             total = objective(scene, rules, terms) - (0.0 if i == LAST else rules.config.hysteresis)
             if total > best[0]:
                 best = total, terms
-        yield ADMISSIBLE if best[1] else code, *best
+        stops = certified_stop(scene.around, rules, state, command, PERIOD) == ADMISSIBLE
+        yield ADMISSIBLE if best[1] else code, *best, stops
 
 
 @given(st.integers(0, 10**6), st.sampled_from([0, 1, 2]), st.sampled_from([1.0, 1.8, 4.0]))
@@ -314,11 +313,18 @@ def test_every_candidate_is_refused_or_scored_by_its_best_manoeuvre(seed, count,
     scene = scene_of(closed, moving=moving, latency=latency, last=last)
     window = DynamicWindow(ROUND, DwaConfig(), PERIOD)
     choice, state = window.choose(pose, twist, scene), state_at(*pose, *twist)
-    slow = list(slow_choice(window.rules, state, scene, choice))
-    assert choice.refused.tolist() == [refused for refused, _, _ in slow]
-    assert choice.score == pytest.approx(np.array([score for _, score, _ in slow]))
-    for found, (_, _, terms) in zip(choice.terms, slow, strict=True):
-        assert terms is None or found == pytest.approx(np.array(terms))
+    refused, score, terms, stops = zip(
+        *slow_choice(window.rules, state, scene, choice), strict=True
+    )
+    highest = max((s for s, stop in zip(score, stops, strict=True) if stop), default=-np.inf)
+    above = np.array(score) > highest  # of no use: without a certified stop
+    assert choice.refused.tolist() == np.where(above, NO_STOP, refused).tolist()
+    assert choice.score == pytest.approx(np.where(above, -np.inf, score))
+    assert (choice.command is None) == (highest == -np.inf)
+    if choice.command is not None:
+        assert (choice.samples[choice.score.argmax()] == choice.manoeuvre[:2]).all()
+    for found, wanted in zip(choice.terms, terms, strict=True):
+        assert wanted is None or found == pytest.approx(np.array(wanted))
 
 
 def test_the_first_two_candidates_are_the_last_manoeuvre_and_to_follow_at_once():

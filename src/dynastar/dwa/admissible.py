@@ -13,7 +13,6 @@ from dynastar.perception.prediction import TRACKING_ERROR
 
 ADMISSIBLE, NO_STOP, MOVING, HIDDEN = range(4)
 CHECK_PERIOD = 0.1  # s between two checks for moving obstacles during a stop
-FAR_ENOUGH = 0.2  # m up to which a clearance is looked at exactly
 NEARER = 1e-3  # m by which a gap has to shrink to count
 
 
@@ -30,7 +29,7 @@ def keeps_clear(closed, body, margin, start, pose, arc):
     fraction, at = 0.0, pose
     while True:
         left = (1.0 - fraction) * sweep
-        slack = clearance_slack(closed, body, margin, start, at, min(left, FAR_ENOUGH))
+        slack = clearance_slack(closed, body, margin, start, at)
         if left <= 0.0 or not -ROUNDING <= slack < left:
             return slack >= -ROUNDING
         fraction = min(1.0, fraction + max(slack, smallest) / sweep)
@@ -43,11 +42,18 @@ def refusal(around, rules, stops_from, command):
 
     The last of ``stops_from`` is the state in which the command is expected to begin to act.
     """
-    for begin in stops_from:
-        code = certified_stop(around, rules, state_of(begin), command, begin.hold)
-        if code != ADMISSIBLE:
-            return code
+    if not stops_are_certified(around, rules, stops_from, command):
+        return NO_STOP
     return rests_in_time(around, rules, state_of(stops_from[-1]), command)
+
+
+@inner
+def stops_are_certified(around, rules, stops_from, command):
+    """Whether there is a certified stop after a command from each of ``stops_from``."""
+    for begin in stops_from:
+        if certified_stop(around, rules, state_of(begin), command, begin.hold) != ADMISSIBLE:
+            return False
+    return True
 
 
 @njit(cache=True)

@@ -133,10 +133,10 @@ def rules_of(robot: Robot, config: DwaConfig, period: float, drive_error: float 
 class Choice:
     """Result of a tick: the command, its manoeuvre and the rest of that manoeuvre.
 
-    ``samples`` (n, 2), ``refused`` (n,) codes (0 admissible), ``terms`` (n, 5) and ``score`` (n,) are
-    copies; candidates without an admissible manoeuvre score -inf. The first two are the rest of the
-    last manoeuvre and following the cost-to-go at once. ``limited_by`` says what kept the command
-    from being faster.
+    ``samples`` (n, 2), ``refused`` (n,) codes (0 not refused), ``terms`` (n, 5) and ``score`` (n,) are
+    copies; candidates without an admissible manoeuvre score -inf. Below the best score no stop is
+    certified. The first two are the rest of the last manoeuvre and following the cost-to-go at once.
+    ``limited_by`` says what kept the command from being faster.
     """
 
     command: Twist | None
@@ -153,11 +153,9 @@ class Choice:
         chosen = "stop"
         if self.command is not None:
             chosen = f"{self.command.v:.2f} m/s and {self.command.omega:.2f} rad/s"
-        admissible_ones = (
-            f"{np.isfinite(self.score).sum()} of {len(self.score)} candidates admissible"
-        )
+        scored = f"{np.isfinite(self.score).sum()} of {len(self.score)} candidates scored"
         limited = f"limited by {shown(self.limited_by)}" if self.limited_by else ""
-        return summary(self, chosen, admissible_ones, limited)
+        return summary(self, chosen, scored, limited)
 
 
 class DynamicWindow:

@@ -8,9 +8,9 @@ last, and following the cost-to-go at once.
 import numpy as np
 
 from dynastar.compiled import allocating, inner, njit
-from dynastar.dwa.admissible import ADMISSIBLE, MOVING, refusal
+from dynastar.dwa.admissible import ADMISSIBLE, MOVING, NO_STOP, rests_in_time, stops_are_certified
 from dynastar.dwa.clearance import least_clearance
-from dynastar.dwa.motion import command_towards, driveable_sample, stopping_time
+from dynastar.dwa.motion import command_towards, driveable_sample, state_of, stopping_time
 from dynastar.dwa.rollout import Start, roll_out, tail_speeds, write
 from dynastar.dwa.scene import BACK, FOLLOW, TAILS, Manoeuvre
 from dynastar.dwa.terms import Terms, evaluate, most_progress, objective, passes_clear, state_value
@@ -30,27 +30,34 @@ CANDIDATE = np.dtype(
 def search(scene, rules, state, stops_from, candidates, rows):
     """Fill ``candidates`` and score them by Eq. 9; returns how many there are, and the best or -1.
 
-    Stops are certified from the STOP_START records ``stops_from``. Where a command does not rest in
-    time before moving obstacles by their hard bound, a manoeuvre that begins with it is admissible
-    only if it is clear of them, as they are expected to go on, for as long as a stop takes: from
-    whatever comes later the robot can still be at rest. ``rows`` is room for a roll-out.
+    The best is the first in the order of scores with a certified stop from each of the STOP_START
+    records ``stops_from``: a certificate takes longer than a score, so those below are not certified.
+    Where a command does not rest in time before moving obstacles by their hard bound, a manoeuvre that
+    begins with it is admissible only if it is clear of them, as they are expected to go on, for as long
+    as a stop takes: from whatever comes later the robot can still be at rest. ``rows`` is room for a
+    roll-out.
     """
     gap = least_clearance(scene.distance_to_obstacle, rules.body, state.pose) - scene.margin
     write(rows[0], state, gap, True)
     here = state_value(scene.cost_to_go, rules.limits, rows[0])
     start = Start(state, gap, here, most_progress(rules, state.v, here))
     n = fill_candidates(scene, rules, start, candidates)
-    best, best_score = -1, -np.inf
+    at_latest, scores = state_of(stops_from[-1]), candidates[:n]["score"]
     for i in range(n):
         candidate = candidates[i]
         command = candidate.command_v, candidate.command_omega
-        candidate.refused = refusal(scene.around, rules, stops_from, command)
+        candidate.refused = rests_in_time(scene.around, rules, at_latest, command)
         candidate.score = -np.inf
         if candidate.refused == ADMISSIBLE or candidate.refused == MOVING:
             score(scene, rules, start, i, candidate, rows)
-        if candidate.score > best_score:
-            best, best_score = i, candidate.score
-    return n, best
+    while True:
+        best = scores.argmax()
+        if scores[best] == -np.inf:
+            return n, -1
+        command = candidates[best].command_v, candidates[best].command_omega
+        if stops_are_certified(scene.around, rules, stops_from, command):
+            return n, best
+        candidates[best].refused, scores[best] = NO_STOP, -np.inf
 
 
 @allocating

@@ -167,7 +167,7 @@ class WindowChart {
     context.strokeStyle = palette.plan;
     context.stroke();
     const why = one.refused !== 0 ? `refused: ${this.refusals[one.refused] || "not admissible"}`
-      : Number.isFinite(one.score) ? `score ${one.score.toFixed(3)}` : "admissible, but each of its manoeuvres touches an obstacle";
+      : Number.isFinite(one.score) ? `score ${one.score.toFixed(3)}` : "each of its manoeuvres touches an obstacle";
     this.hint.textContent = `v ${one.v.toFixed(2)} m/s, omega ${one.omega.toFixed(2)} rad/s: ${why}`;
   }
 }
