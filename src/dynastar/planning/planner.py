@@ -33,7 +33,6 @@ from dynastar.planning.warming import warm_up
 Mask = npt.NDArray[np.bool_]
 Point = tuple[float, float]
 
-BY_EQ_2 = "improved", "weighted"
 MOST_RADIUS = 100.0  # m
 
 
@@ -213,7 +212,7 @@ class GridPlanner:
         search = self._inflated_grid.search
         try:
             cell, way = self._way_out(start, places)
-            last = self._first_reached(cell, places, planner)
+            last = self._first_reached(cell, places)
             found = search.search(cell, last, planner, self.config.heuristic, explored)
         except NoPath:
             self._failed = True
@@ -239,14 +238,14 @@ class GridPlanner:
             ) from None
         return (int(way.cells[-1, 0]), int(way.cells[-1, 1])), way
 
-    def _first_reached(self, cell: Cell, places: Cells, planner: str) -> Cell:
+    def _first_reached(self, cell: Cell, places: Cells) -> Cell:
         """The first of ``places`` that is connected with a cell. Raises NoPath if none is.
 
-        A search for a place that is not expands all that the disc can reach, which takes longer than
-        the connected parts by far with Eq. 2. A single place is left to an exact search until one failed.
+        A single place is left to the search, unless the last search failed: it would expand all
+        that the disc can reach, time after time.
         """
         row, column = map(int, places[0])
-        if len(places) > 1 or self._failed or planner in BY_EQ_2:
+        if len(places) > 1 or self._failed:
             parts = self._inflated_grid.parts
             reached = places[parts[places[:, 0], places[:, 1]] == parts[cell]]
             if len(reached) == 0:
