@@ -11,8 +11,7 @@ from dynastar.footprint import Footprint
 from dynastar.geometry import Goal
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import Navigator
-from dynastar.navigator.config import PRESETS
-from dynastar.navigator.navigator import FINE
+from dynastar.navigator.config import FINE, PRESETS
 from dynastar.perception import MovingObstacle
 from dynastar.robot import ROBOTS, Lidar, Limits, Robot
 from dynastar.simulation.lidar import LidarSimulator

@@ -355,7 +355,7 @@ def test_a_robot_comes_to_rest_before_it_plans_anew(monkeypatch):
 def test_cells_are_halved_where_nothing_leads_on_unless_the_map_is_large(monkeypatch):
     drive = under_way()
     for most, resolution in ((4 * 120 * 160 - 1, 0.05), (4 * 120 * 160, 0.025)):
-        monkeypatch.setattr("dynastar.navigator.navigator.MOST_CELLS", most)
+        monkeypatch.setattr("dynastar.navigator.config.MOST_CELLS", most)
         drive.navigator._refine()
         assert drive.navigator.planning_map.grid.resolution == pytest.approx(resolution)
     drive.until("arrived")

@@ -213,7 +213,7 @@ def test_an_updated_grid_is_as_if_made_anew(seed):
     grid.update(row, column, patch < 0.3)
     anew = SearchGrid(changed)
     assert (grid.occupied == changed).all()
-    assert (grid._near == anew._near).all()
+    assert (grid.near == anew.near).all()
     assert (grid.lines[0] == anew.lines[0]).all()
     assert (grid.lines[1] == anew.lines[1]).all()
     assert (grid.sums == anew.sums).all()

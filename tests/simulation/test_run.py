@@ -257,19 +257,23 @@ def test_no_way_is_an_outcome_and_no_goal_is_an_error():
 
 
 def test_plans_and_recoveries_are_written_down_once_each():
-    def plan(*points, explored=None):
-        return SimpleNamespace(path=Path(np.array(points, float)), explored=explored)
+    def plan(*points):
+        return SimpleNamespace(path=Path(np.array(points, float)))
 
-    first, second = plan((5, 5), (12, 5)), plan((5, 5), (8, 9), (12, 5), explored=[[1, 2]])
+    first, second = plan((5, 5), (12, 5)), plan((5, 5), (8, 9), (12, 5))
     frame = GridFrame(0.25, 1.0, 2.0, 0.3)
-    episode = run(
-        scenario(time_limit=2.0),
-        navigator=saying(
-            (0.2, {"plan": first, "plan_id": 1, "plan_reason": "new goal"}),
-            (1.0, {"plan": second, "plan_id": 2, "plan_reason": "blocked"}),
-            (1.0, {"planning_frame": frame, "recoveries": 1, "reason": "turning"}),
-        ),
+    planning = saying(
+        (0.2, {"plan": first, "plan_id": 1, "plan_reason": "new goal"}),
+        (1.0, {"plan": second, "plan_id": 2, "plan_reason": "blocked"}),
+        (1.0, {"planning_frame": frame, "recoveries": 1, "reason": "turning"}),
     )
+
+    class Exploring(planning):
+        @property
+        def explored(self):
+            return [[1, 2]] if self.status.plan_id == 2 else np.empty((0, 2), np.int32)
+
+    episode = run(scenario(time_limit=2.0), navigator=Exploring)
     assert [record.reason for record in episode.plans] == ["new goal", "blocked"]
     assert [record.stamp for record in episode.plans] == pytest.approx([0.2, 1.0])
     np.testing.assert_array_equal(episode.plans[1].points, [(5, 5), (8, 9), (12, 5)])

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 from dynastar.config import Field, checked, choose, self_checking
 from dynastar.dwa.config import DwaConfig, Weights
+from dynastar.grid import OccupancyGrid
 from dynastar.navigator.progress import STEP
 from dynastar.perception import LocalMapConfig, PredictionConfig, TrackerConfig
 from dynastar.planning import PlannerConfig
@@ -13,6 +14,8 @@ from dynastar.robot import Robot
 
 SMALLEST_LOCAL_MAP = 2.0  # m, its side
 CELLS = 4  # of the maps, at least, to half a robot's width
+FINE = 8  # cells to half the robot's width, from which on cells are not halved
+MOST_CELLS = 10_000_000  # of a planning map whose cells are halved: it takes 2 s to plan on anew
 
 
 # What scenario files say, too.
@@ -107,6 +110,14 @@ def margin_of(robot: Robot, config: NavigatorConfig) -> float:
         lever += robot.footprint.circumscribed
     errors = config.range_error + 2.0 * config.pose_error + config.heading_error * lever
     return max(errors, 0.5 * robot.lidar.increment * robot.footprint.circumscribed)
+
+
+def refined(config: NavigatorConfig, grid: OccupancyGrid, robot: Robot) -> NavigatorConfig:
+    """The settings for cells half as wide as those of a planning map, if these are wide for the robot."""
+    wide = grid.resolution > robot.footprint.half_width / FINE
+    if wide and 4 * grid.values.size <= MOST_CELLS:
+        return config._replace(resolution=0.5 * grid.resolution)
+    return config
 
 
 def configured(

@@ -12,12 +12,12 @@ from dynastar.grid import OccupancyGrid
 from dynastar.navigator.aligned import turned_disc, turned_goal
 from dynastar.navigator.arrival import has_arrived, stays_near
 from dynastar.navigator.braking import Commands
-from dynastar.navigator.config import NavigatorConfig, fitted, margin_of
+from dynastar.navigator.config import NavigatorConfig, fitted, margin_of, refined
 from dynastar.navigator.driving import Driving
 from dynastar.navigator.inputs import as_given_path, as_robot
 from dynastar.navigator.last_turn import LastTurn, turn_by
 from dynastar.navigator.mission import Mission
-from dynastar.navigator.planners import Planners, radii_of
+from dynastar.navigator.planners import Cells, Planners, radii_of
 from dynastar.navigator.recovery import Recovery
 from dynastar.navigator.replanning import Route
 from dynastar.navigator.sensing import Sensing
@@ -27,9 +27,6 @@ from dynastar.perception import MovingObstacle, PlanningMap
 from dynastar.planning import Planner
 from dynastar.robot import Robot
 from dynastar.scan import LaserScan
-
-MOST_CELLS = 10_000_000  # of a planning map whose cells are halved: it takes 2 s to plan on anew
-FINE = 8  # cells to half the robot's width, from which on cells are not halved
 
 
 class Navigator:
@@ -88,6 +85,11 @@ class Navigator:
         return self.route.planners
 
     @property
+    def explored(self) -> Cells:
+        """The cells (m, 2) that the search of the last plan expanded, row by row."""
+        return self.planners.explored(self.route.plan)
+
+    @property
     def status(self) -> Status:
         """State of the navigator and its reason: a copy, as of the last command."""
         mission, route, choice = self.mission, self.route, self._choice
@@ -117,10 +119,7 @@ class Navigator:
         self._choice: Choice | None = None
 
     def set_map(self, grid: OccupancyGrid) -> None:
-        """Use another map; the next tick plans anew.
-
-        What was seen round the robot is kept, unless the map has another yaw.
-        """
+        """Use another map and plan anew; what was seen nearby is kept, unless the map's yaw is another."""
         self._use(grid, self.config)
         if self.mission.is_blocked:
             self._set_out(self.mission.goals, "a new map", self.route.given)
@@ -141,10 +140,9 @@ class Navigator:
 
     def _refine(self) -> None:
         """Use cells half as wide, if these are wide for the robot: sensed cells close narrow ways."""
-        grid = self.planning_map.grid
-        wide = grid.resolution > self.robot.footprint.half_width / FINE
-        if wide and 4 * grid.values.size <= MOST_CELLS:
-            self._use(self._grid, self.config._replace(resolution=0.5 * grid.resolution))
+        config = refined(self.config, self.planning_map.grid, self.robot)
+        if config is not self.config:
+            self._use(self._grid, config)
 
     def forget(self) -> None:
         """Drop all that was sensed, but for the tracks."""

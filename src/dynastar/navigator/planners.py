@@ -1,7 +1,5 @@
 """The planners of a navigator: one search for each of several clearances."""
 
-from dataclasses import replace
-
 import numpy as np
 import numpy.typing as npt
 
@@ -15,6 +13,7 @@ from dynastar.perception.planning_map import Patch, PlanningMap
 from dynastar.planning import GridPlanner, Plan, Planner, plan_by
 
 Mask = npt.NDArray[np.bool_]
+Cells = npt.NDArray[np.int32]
 Point = tuple[float, float]
 
 PLAN_MARGIN = 0.03  # m beyond the footprint that a plan keeps clear, at least
@@ -117,12 +116,15 @@ class Planners:
         """Cells (n, n) of a local map where even the tightest planner does not fit."""
         return ~self.planning_map.under(self.by_width[-1].free, local_map, outside=False)
 
-    def with_explored(self, plan: Plan) -> Plan:
-        """The last plan with the cells that its search expanded; 20 ms on a map of 4 million cells."""
-        if self._planner is not None:
-            return plan
+    def explored(self, plan: Plan | None) -> Cells:
+        """The cells (m, 2) that the search of the last plan expanded, row by row; none of a user's.
+
+        Takes 20 ms on a map of 4 million cells.
+        """
+        if plan is None or self._planner is not None:
+            return np.empty((0, 2), np.int32)
         [width] = (width for width in self.by_width if width.radius == plan.radius)
-        return replace(plan, explored=width.explored)
+        return width.explored
 
     def _ask(self, width: GridPlanner, start: Point, goal: Point, planner: str) -> Plan:
         """A plan of a planner's width, or the plan of the user's planner."""

@@ -211,8 +211,7 @@ class Route:
     def _take(self, plan: Plan, goal: Goal, reason: str) -> None:
         path, self._is_short = self._part_to_drive(plan, goal)
         self.path, self.s, self.error = turned_path(path, -self._yaw), 0.0, None
-        self.plan = self.planners.with_explored(plan)
-        self.plan_id, self.reason = self.plan_id + 1, reason
+        self.plan, self.plan_id, self.reason = plan, self.plan_id + 1, reason
 
     def _part_to_drive(self, plan: Plan, goal: Goal) -> tuple[Path, bool]:
         """The path to drive now, and whether it ends short of the goal.

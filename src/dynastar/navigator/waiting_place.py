@@ -62,16 +62,16 @@ def waiting_place(ways: WaysToGoal, planners: Sequence[GridPlanner], start: Poin
     lengths, frame = ways.lengths, planners[0].grid.frame
     height, width = lengths.shape
     row, column = frame.to_grid(*start)
+    box = np.s_[ways.row : ways.row + height, ways.column : ways.column + width]
     row, column = row - ways.row, column - ways.column
     is_within = 0 <= row < height and 0 <= column < width
     here = lengths[int(row), int(column)] if is_within else np.inf
     for planner in planners:
         try:
-            reached = planner.reached_from(start)
+            reached = planner.reached_from(start, box)
         except (StartOccupied, NoPath):
             continue
-        box = reached[ways.row : ways.row + height, ways.column : ways.column + width]
-        within = np.where(box, lengths, np.inf)
+        within = np.where(reached, lengths, np.inf)
         if within.min() > WAIT_WITHIN:
             continue
         if here - within.min() <= NEARER:

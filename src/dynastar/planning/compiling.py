@@ -5,6 +5,7 @@ import functools
 import numpy as np
 
 from dynastar.grid import OccupancyGrid
+from dynastar.planning.parts import find_parts
 from dynastar.planning.planner import plan
 from dynastar.planning.search import SearchGrid
 
@@ -21,4 +22,5 @@ def warm_up_default() -> None:
     search = SearchGrid(blocked)
     row, column = map(int, search.search((0, 0), (29, 29), "auto").cells[3])
     search.update(row, column, [[True]])
+    find_parts(search.near)
     search.search((0, 0), (29, 29), "auto")

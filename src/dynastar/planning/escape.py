@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from dynastar.clearance import inflate
 from dynastar.errors import NoPath, StartOccupied
-from dynastar.planning.inflated import InflatedGrid
+from dynastar.planning.inflated import InflatedGrid, Window
 from dynastar.planning.neighbours import components
 from dynastar.planning.search import Cell, Cells, SearchGrid
 from dynastar.planning.smoothing import Points, smooth
@@ -61,10 +61,10 @@ def way_out(
     blocked = grid.blocked if zone is None else grid.blocked & ~zone
     clearance = _clearance(blocked, start, grid.radius)
     kept = grid.radius if clearance >= grid.radius else max(clearance - 1.0, 0.0)
-    parts = grid.parts[window]
+    parts = grid.parts_in(window)
     leads_on = parts > 0
     if places is not None:
-        leads_on &= np.isin(parts, grid.parts[places[:, 0], places[:, 1]])
+        leads_on &= np.isin(parts, grid.parts.at(*places.T))
     closed = _inflated(blocked, window, kept)
     if zone is not None:  # close the space outside from which no way leads on
         spaces = components(~closed & ~zone[window])
@@ -117,7 +117,7 @@ def _left_once(
     return way, inside
 
 
-def _window(grid: InflatedGrid, start: Cell, zone: Mask | None) -> tuple[slice, slice]:
+def _window(grid: InflatedGrid, start: Cell, zone: Mask | None) -> Window:
     """The rows and columns in which a way out is searched."""
     reach, parts = reach_of_escape(grid.radius), []
     for axis in (0, 1):
@@ -143,7 +143,7 @@ def _clearance(blocked: Mask, cell: Cell, radius: float) -> float:
     return float(min(away.min(initial=np.inf), edge, radius))
 
 
-def _inflated(blocked: Mask, window: tuple[slice, slice], radius: float) -> Mask:
+def _inflated(blocked: Mask, window: Window, radius: float) -> Mask:
     """The window of ``blocked`` inflated by ``radius`` cells; what lies off the map is blocked."""
     reach = math.ceil(radius) + 1
     top, left = (max(part.start - reach, 0) for part in window)

@@ -7,12 +7,13 @@ import numpy.typing as npt
 
 from dynastar.clearance import inflate
 from dynastar.planning.bounds import check_window
-from dynastar.planning.neighbours import components
+from dynastar.planning.parts import Parts, find_parts
 from dynastar.planning.search import Cell, Cells, SearchGrid
 from dynastar.planning.segments import first_contact, is_clear, mask_bytes
 
 Mask = npt.NDArray[np.bool_]
 Point = tuple[float, float]
+Window = tuple[slice, slice]
 
 
 class InflatedGrid:
@@ -26,7 +27,8 @@ class InflatedGrid:
         self.bytes = mask_bytes(blocked)  # 1 where a cell is blocked
         self._search = SearchGrid(inflate(self.bytes, radius), self.bytes, cell)
         self._stale: tuple[int, int, int, int] | None = None  # marked: top, left, bottom, right
-        self._parts: npt.NDArray[np.int32] | None = None
+        self._parts: Parts | None = None
+        self.is_marked = False  # other cells are blocked than at first
 
     @property
     def blocked(self) -> Mask:
@@ -42,11 +44,18 @@ class InflatedGrid:
         return self._search
 
     @property
-    def parts(self) -> npt.NDArray[np.int32]:
-        """Number of the connected part [rows, columns] that each cell is in; 0 in the inflation."""
+    def parts(self) -> Parts:
+        """The connected parts outside the inflation, up to date with all marks."""
         if self._parts is None:
-            self._parts = components(~self.search.occupied)
+            self._parts = find_parts(self.search.near)
         return self._parts
+
+    def parts_in(self, window: Window) -> npt.NDArray[np.int32]:
+        """Number of the connected part [rows, columns] that each cell of a window is in, or 0."""
+        rows, columns = (
+            np.arange(n)[part] for n, part in zip(self.bytes.shape, window, strict=True)
+        )
+        return self.parts.at(rows[:, None], columns)
 
     def mark(self, row0: int, col0: int, patch_blocked: npt.ArrayLike) -> None:
         """Replace the window at (row0, col0), true where a cell is blocked.
@@ -59,7 +68,7 @@ class InflatedGrid:
         bottom, right = row0 + patch.shape[0], col0 + patch.shape[1]
         self.bytes[row0:bottom, col0:right] = patch
         self._search.recount()
-        self._parts = None
+        self._parts, self.is_marked = None, True
         if self._stale is not None:
             top, left, low, side = self._stale
             row0, col0 = min(row0, top), min(col0, left)
@@ -90,7 +99,7 @@ class InflatedGrid:
         reach = math.ceil(distance) + 1
         top, left = max(int(point[0]) - reach, 0), max(int(point[1]) - reach, 0)
         bottom, right = int(point[0]) + reach + 1, int(point[1]) + reach + 1
-        fits = ~self.search.occupied[top:bottom, left:right]
+        fits = self.search.free[top:bottom, left:right] != 0
         cells = (np.argwhere(fits) + (top, left)).astype(np.int32)
         away = np.hypot(*(cells + 0.5 - point).T)
         order = np.argsort(away, kind="stable")

@@ -52,13 +52,15 @@ def is_closed(label: int, stamp: int) -> bool:
 @njit(cache=True)
 def closed_nodes(labels: Ints, stamp: int) -> npt.NDArray[np.int32]:
     """The nodes (m,) that the search of that stamp closed, in order."""
-    found, count = np.empty(1024, np.int32), 0
+    count = 0
+    for node in range(labels.size):
+        count += is_closed(labels[node], stamp)
+    found, count = np.empty(count, np.int32), 0
     for node in range(labels.size):
         if is_closed(labels[node], stamp):
-            found = with_room(found, count + 1)
             found[count] = node
             count += 1
-    return found[:count]
+    return found
 
 
 @njit(cache=True)

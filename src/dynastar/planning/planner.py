@@ -23,7 +23,7 @@ from dynastar.path import Path
 from dynastar.planning.any_angle import straighten
 from dynastar.planning.escape import NO_WAY, WayOut, reach_of_escape, smoothed, way_out
 from dynastar.planning.explain import explained
-from dynastar.planning.inflated import InflatedGrid
+from dynastar.planning.inflated import InflatedGrid, Window
 from dynastar.planning.plan_type import Plan, PlannerConfig
 from dynastar.planning.search import ALGORITHMS, Cell, Cells, SearchResult
 from dynastar.planning.segments import first_contact
@@ -140,14 +140,15 @@ class GridPlanner:
             error.radius = self.radius
             raise
 
-    def reached_from(self, start_xy: Point) -> Mask:
+    def reached_from(self, start_xy: Point, window: Window = np.s_[:, :]) -> Mask:
         """True where the disc can go from a start, or from any place where it leaves the inflation there.
 
-        [rows, columns]; raises OutOfMap or StartOccupied.
+        [rows, columns] of the ``window`` of the map; raises OutOfMap or StartOccupied.
         """
         cell, way = self._way_out(self._point(start_xy, "start"), None)
-        parts = self._inflated_grid.parts
-        return np.isin(parts, way.parts if len(way.cells) else parts[cell])
+        inflated = self._inflated_grid
+        from_here = way.parts if len(way.cells) else inflated.parts.at(*np.array(cell))
+        return np.isin(inflated.parts_in(window), from_here)
 
     def _plan(
         self, start_xy: Point, goal_xy: Point, places: Cells, explored: bool, planner: str
@@ -241,13 +242,13 @@ class GridPlanner:
     def _first_reached(self, cell: Cell, places: Cells) -> Cell:
         """The first of ``places`` that is connected with a cell. Raises NoPath if none is.
 
-        A single place is left to the search, unless the last search failed: it would expand all
-        that the disc can reach, time after time.
+        On the map as given a single place is left to the search, unless the last search failed: one
+        for a place that cannot be reached expands all that the disc can reach.
         """
         row, column = map(int, places[0])
-        if len(places) > 1 or self._failed:
+        if len(places) > 1 or self._failed or self._inflated_grid.is_marked:
             parts = self._inflated_grid.parts
-            reached = places[parts[places[:, 0], places[:, 1]] == parts[cell]]
+            reached = places[parts.at(*places.T) == parts.at(*np.array(cell))]
             if len(reached) == 0:
                 raise NoPath(f"no place can be reached from cell {cell}")
             row, column = map(int, reached[0])

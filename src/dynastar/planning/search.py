@@ -64,10 +64,10 @@ class SearchGrid:
                 f"a search grid has {self.rows} x {self.columns} cells: "
                 f"at most {labels.MAX_NODES} can be searched"
             )
-        self._near = np.zeros((self.rows + 2, self._width), np.uint8)
-        ringed = np.ones(self._near.shape, np.uint8)
+        self.near = np.zeros((self.rows + 2, self._width), np.uint8)
+        ringed = np.ones(self.near.shape, np.uint8)
         ringed[1:-1, 1:-1] = mask
-        find_near(ringed, self._near[1:-1, 1:-1])
+        find_near(ringed, self.near[1:-1, 1:-1])
         self._sums: npt.NDArray[np.int32] | None = None
         self._recounts = False
         self._lines: tuple[jump_kernel.Words, jump_kernel.Words] | None = None
@@ -88,13 +88,13 @@ class SearchGrid:
     @property
     def free(self) -> npt.NDArray[np.uint8]:
         """Not 0 where a cell is free, [rows, columns]; a view, not to be written to."""
-        return self._near[1:-1, 1:-1]
+        return self.near[1:-1, 1:-1]
 
     def is_free(self, cell: Cell) -> bool:
         """Whether a cell (row, column) lies on the grid and is free."""
         row, column = cell
         inside = 0 <= row < self.rows and 0 <= column < self.columns
-        return inside and bool(self._near[row + 1, column + 1])
+        return inside and bool(self.near[row + 1, column + 1])
 
     @property
     def sums(self) -> npt.NDArray[np.int32]:
@@ -114,7 +114,7 @@ class SearchGrid:
     def lines(self) -> tuple[jump_kernel.Words, jump_kernel.Words]:
         """The blocked cells as bits, row by row and column by column, for jumping."""
         if self._lines is None:
-            rows, columns = self._near.shape
+            rows, columns = self.near.shape
             self._lines = (
                 np.empty((rows, (columns + 63) // 64), np.uint64),
                 np.empty((columns, (rows + 63) // 64), np.uint64),
@@ -136,13 +136,13 @@ class SearchGrid:
         # The window and one cell more all round changes; two cells more tell how.
         top, left = max(row0 - 1, 0), max(col0 - 1, 0)
         end, side = min(bottom + 1, self.rows), min(right + 1, self.columns)
-        blocked = (self._near[top : end + 2, left : side + 2] == 0).view(np.uint8)
+        blocked = (self.near[top : end + 2, left : side + 2] == 0).view(np.uint8)
         within = np.s_[row0 - top + 1 : bottom - top + 1, col0 - left + 1 : right - left + 1]
         change = mask.astype(np.int32) - blocked[within]
         if not change.any():
             return
         blocked[within] = mask
-        find_near(blocked, self._near[top + 1 : end + 1, left + 1 : side + 1])
+        find_near(blocked, self.near[top + 1 : end + 1, left + 1 : side + 1])
         if self._counted is None and self._sums is not None:
             more = change.cumsum(axis=0).cumsum(axis=1)
             self._sums[row0 + 1 : bottom + 1, col0 + 1 : right + 1] += more
@@ -205,9 +205,9 @@ class SearchGrid:
         """Lengths in cells, [rows, columns], of the shortest ways from a cell; inf if none."""
         start = self._inside(start_rc, "start")
         self._run(start, None, "dijkstra", _DEFAULTS)
-        nodes, lengths = self._closed(), np.full(self._near.size, np.inf)
+        nodes, lengths = self._closed(), np.full(self.near.size, np.inf)
         lengths[nodes] = (self._labels[nodes] >> labels.G_SHIFT) / labels.STRAIGHT
-        return lengths.reshape(self._near.shape)[1:-1, 1:-1]
+        return lengths.reshape(self.near.shape)[1:-1, 1:-1]
 
     def way_to(self, cell: Cell) -> Cells:
         """The way (n, 2) to a cell that the last flood expanded; NoPath for any other."""
@@ -227,13 +227,13 @@ class SearchGrid:
     ) -> tuple[bool, int]:
         """Whether the goal was found, and how many cells were expanded."""
         if self._stamp == labels.MAX_STAMP or not self._labels.size:
-            self._labels = np.zeros(self._near.size, np.int64)
+            self._labels = np.zeros(self.near.size, np.int64)
             self._stamp = 0
         self._stamp += 1
         self._last = self._labels, self._stamp
         from_to = self._node(start), -1 if goal is None else self._node(goal)
         where = self._width, self._labels, self._stamp, *from_to
-        near = self._near.reshape(-1)
+        near = self.near.reshape(-1)
         if algorithm == "jump":
             found, expanded, self._pool, self._nodes = jump_kernel.jump_search(
                 near, *self.lines, *where, self._pool, self._nodes
@@ -258,7 +258,7 @@ class SearchGrid:
         Uses and keeps the ways to the goal that earlier searches found.
         """
         if self._tree is None:
-            self._tree = GoalTree(self._near)
+            self._tree = GoalTree(self.near)
         found, expanded = self._tree.search(self._node(start), self._node(goal))
         self._last = self._tree.searched, self._tree.stamp
         return self._tree.trace() if found else None, expanded
@@ -266,15 +266,15 @@ class SearchGrid:
     def _prefers_jumps(self) -> bool:
         """Whether the map has so few corners that jumping from one to the next is worth it."""
         if self._jumps is None:
-            stride = max(1, self._near.size // SAMPLED) | 1
-            free, turns = count_turns(self._near.reshape(-1), stride)
+            stride = max(1, self.near.size // SAMPLED) | 1
+            free, turns = count_turns(self.near.reshape(-1), stride)
             self._jumps = turns < JUMP_BELOW * free
         return self._jumps
 
     def _pack(self, top: int, left: int, bottom: int, right: int) -> None:
         rows, columns = self.lines
-        jump_kernel.pack(self._near, rows, top, left, bottom, right)
-        jump_kernel.pack(self._near, columns, left, top, right, bottom, upright=True)
+        jump_kernel.pack(self.near, rows, top, left, bottom, right)
+        jump_kernel.pack(self.near, columns, left, top, right, bottom, upright=True)
 
     def _trace(self, goal: Cell) -> tuple[Cells, float]:
         return labels.trace(self._labels, self._stamp, self._width, self._node(goal))

@@ -88,7 +88,7 @@ class Session:
 
     def _record(self) -> None:
         self._since, self._ticks = self.scenery.world.time, 0
-        self._recorder = Recorder(self.scenery.scenario, self.scenery.world)
+        self._recorder = Recorder(self.scenery.scenario, self.scenery.world, self.navigator)
         self._tracer = Tracer(self)
         self.journal = Journal(
             {

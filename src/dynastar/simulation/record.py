@@ -22,8 +22,8 @@ NOTHING_EXPLORED = np.empty((0, 2), dtype=np.int32)
 class Recorder:
     """Gathers what an Episode holds, tick by tick; ``plans`` and ``events`` so far may be read."""
 
-    def __init__(self, scenario: Scenario, world: World) -> None:
-        self._scenario, self._world = scenario, world
+    def __init__(self, scenario: Scenario, world: World, controller: Any) -> None:
+        self._scenario, self._world, self._controller = scenario, world, controller
         self._rows: list[tuple[float, ...]] = []
         self._states: list[str] = []
         self._limits: list[str] = []
@@ -44,13 +44,13 @@ class Recorder:
         self._recoveries = status.recoveries
         if status.plan is not None and status.plan_id != self._plan_id:
             self._plan_id, self._frame = status.plan_id, status.planning_frame
-            explored = status.plan.explored
+            explored = getattr(self._controller, "explored", NOTHING_EXPLORED)
             self.plans.append(
                 PlanRecord(
                     self._world.time,
                     str(status.plan_reason),
                     np.array(status.plan.path.points, dtype=np.float64),
-                    NOTHING_EXPLORED if explored is None else np.array(explored, np.int32),
+                    np.array(explored, np.int32),
                 )
             )
         self._row(command, command_ms, state, str(getattr(status, "limited_by", None) or ""))

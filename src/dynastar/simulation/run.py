@@ -30,7 +30,8 @@ class Controller(Protocol):
 
     ``status`` needs ``state``, ``reason``, ``recoveries``, ``plan``, ``plan_id``, ``plan_reason``,
     ``planning_frame`` and ``error`` as the Navigator's has them; ``plan`` may stay None. An optional
-    ``limited_by`` says in a word or two what limited the speed in this tick, "" for nothing.
+    ``limited_by`` says in a word or two what limited the speed in this tick, "" for nothing. A
+    controller may have ``explored``, the cells (m, 2) of ``planning_frame`` that its search expanded.
     """
 
     @property
@@ -87,7 +88,7 @@ def drive(
     world = make_world(scenario, start_pose(scenario), seed)
     controller = (navigator or Navigator)(scenario.grid, scenario.robot, config)
     controller.set_goal(scenario.goals)
-    recorder, referee = Recorder(scenario, world), Referee(scenario, config)
+    recorder, referee = Recorder(scenario, world, controller), Referee(scenario, config)
     faults = FaultInjector(scenario.faults, world, controller, recorder.event, seed)
     tracer = Tracer(controller) if trace else None
     ending, timer = None, LoopTimer(scenario.loop, config.period, seed)
