@@ -1,5 +1,6 @@
 """Progress by cost-to-go: when the robot counts as stuck, and when the rounds start over."""
 
+import numpy as np
 import pytest
 
 from dynastar.navigator.progress import LEAP, STEP, Progress
@@ -112,3 +113,14 @@ def test_rounds_without_a_path_count_until_the_next_goal():
     assert (progress.rounds, progress.pathless_rounds) == (0, 2)
     progress.reset()
     assert progress.pathless_rounds == 0
+
+
+def test_a_noisy_pose_on_steep_ground_is_no_progress():
+    """A robot at rest that another path leads into the wall each second: values fall by 40 m a metre."""
+    progress, random = Progress(6.0), np.random.default_rng(0)
+    stuck = []
+    for second in range(20):
+        progress.measure_anew()
+        x = float(random.uniform(-0.02, 0.02))
+        stuck.append(progress.stuck(float(second), (x, 0.0), lambda x, y: 40.0 * (1.0 - x)))
+    assert stuck.count(True) == 2

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 
-STEP = 0.1  # m by which the cost-to-go has to be lower to count
+STEP = 0.1  # m by which the robot has to move, and the cost-to-go to be lower there, to count
 LEAP = 1.0  # m by which it has to be lower for the rounds of recovery to start over
 
 Point = tuple[float, float]
@@ -66,7 +66,9 @@ class Progress:
         if self._is_new_path and self._anchor is not None:
             self._anchor = here if cost_to_go(*self._anchor) < value else self._anchor
         self._is_new_path = False
-        if self._anchor is None or cost_to_go(*self._anchor) - value > STEP:
+        if self._anchor is None or (
+            math.dist(here, self._anchor) > STEP and cost_to_go(*self._anchor) - value > STEP
+        ):
             if self._anchor is not None or self._since == -math.inf:
                 self._since = now
             self._anchor = here
