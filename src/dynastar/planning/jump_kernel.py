@@ -35,7 +35,6 @@ from dynastar.planning.neighbours import (
 Words = npt.NDArray[np.uint64]
 
 TOP = np.uint64(63)
-AT_ONCE = 64  # lines, so that what is made for them stays in the cache
 
 
 def pack(
@@ -47,16 +46,16 @@ def pack(
     is blocked. The window ends before ``bottom``, ``right``.
     """
     first, last = left >> 6, ((right - 1) >> 6) + 1
-    for low in range(top, bottom, AT_ONCE):
-        high = min(low + AT_ONCE, bottom)
-        if upright:  # NumPy's copy takes ten times as long
-            part = cv2.transpose(near[64 * first : 64 * last, low:high])
-        else:
-            part = near[low:high, 64 * first : 64 * last]
-        blocked = np.ones((high - low, 64 * (last - first)), np.bool_)
-        np.equal(part, 0, out=blocked[:, : part.shape[1]])
-        bits = np.packbits(blocked, axis=1, bitorder="little")
-        lines[low:high, first:last] = bits.view("<u8")
+    if upright:
+        part = cv2.transpose(
+            near[64 * first : 64 * last, top:bottom]
+        )  # NumPy's copy takes ten times
+    else:
+        part = near[top:bottom, 64 * first : 64 * last]
+    blocked = np.ones((bottom - top, 64 * (last - first)), np.bool_)
+    np.equal(part, 0, out=blocked[:, : part.shape[1]])
+    bits = np.packbits(blocked, axis=1, bitorder="little")
+    lines[top:bottom, first:last] = bits.view("<u8")
 
 
 @njit(cache=True, inline="always")
