@@ -4,8 +4,8 @@ Rooms with boxes of 0.2 to 1 m in them that cover a seventh, of 9 x 7 m in cells
 100 x 100 m in cells of 5 cm. A disc of any radius up to 1.5 m is to go from any free cell to any other,
 so that most starts lie in the inflation, and many plans end in a refusal. Each map is new: ``prepare``
 inflates it, ``plan`` is the improved A* with the way out of the inflation, and ``exact`` the same by the
-exact search. Where that has a path, a box of 1 m that was not there stands on its middle then, and
-``replan`` marks it and plans again by the improved A*. Warm, one thread, each plan once.
+exact search. Where there is a path, ``replan`` marks a box of 1 m on its middle and plans again by the
+improved A*. Warm, one thread, each plan once.
 """
 
 import argparse

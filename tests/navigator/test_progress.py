@@ -115,12 +115,16 @@ def test_rounds_without_a_path_count_until_the_next_goal():
     assert progress.pathless_rounds == 0
 
 
-def test_a_noisy_pose_on_steep_ground_is_no_progress():
-    """A robot at rest that another path leads into the wall each second: values fall by 40 m a metre."""
-    progress, random = Progress(6.0), np.random.default_rng(0)
-    stuck = []
+def into_a_wall(x, y):
+    """A cost-to-go that falls by 40 m a metre, as where the way leads through what cannot be driven."""
+    return 40.0 * (1.0 - x)
+
+
+def test_errors_of_the_pose_on_steep_ground_are_no_progress():
+    """A robot at rest that gets another path each second."""
+    progress, random, stuck = Progress(6.0), np.random.default_rng(0), []
     for second in range(20):
         progress.measure_anew()
-        x = float(random.uniform(-0.02, 0.02))
-        stuck.append(progress.stuck(float(second), (x, 0.0), lambda x, y: 40.0 * (1.0 - x)))
+        here = float(random.uniform(-0.04, 0.04)), 0.0
+        stuck.append(progress.stuck(float(second), here, into_a_wall))
     assert stuck.count(True) == 2
