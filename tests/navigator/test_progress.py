@@ -128,3 +128,11 @@ def test_errors_of_the_pose_on_steep_ground_are_no_progress():
         here = float(random.uniform(-0.04, 0.04)), 0.0
         stuck.append(progress.stuck(float(second), here, into_a_wall))
     assert stuck.count(True) == 2
+
+
+def test_errors_of_the_pose_on_steep_ground_do_not_start_the_rounds_over():
+    progress = Progress(3.0)
+    for second in range(5):
+        progress.stuck(float(second), (-0.04, 0.0), into_a_wall)
+    assert not progress.stuck(5.0, (0.04, 0.0), into_a_wall)
+    assert progress.rounds == 1

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 
-STEP = 0.1  # m by which the robot has to move, and the cost-to-go to be lower there, to count
+STEP = 0.1  # m by which the robot has to move, and the cost-to-go has to be lower there, to count
 LEAP = 1.0  # m by which it has to be lower for the rounds of recovery to start over
 
 Point = tuple[float, float]
@@ -61,14 +61,16 @@ class Progress:
     def _compare(self, now: float, here: Point, cost_to_go: CostToGoAt) -> None:
         """Take note of progress since the robot was at the place it is measured from."""
         value = cost_to_go(*here)
-        if self._stuck_at is not None and cost_to_go(*self._stuck_at) - value > LEAP:
+
+        def is_nearer_than(place: Point, by: float) -> bool:
+            return math.dist(here, place) > STEP and cost_to_go(*place) - value > by
+
+        if self._stuck_at is not None and is_nearer_than(self._stuck_at, LEAP):
             self._stuck_at, self.rounds = None, 0
         if self._is_new_path and self._anchor is not None:
             self._anchor = here if cost_to_go(*self._anchor) < value else self._anchor
         self._is_new_path = False
-        if self._anchor is None or (
-            math.dist(here, self._anchor) > STEP and cost_to_go(*self._anchor) - value > STEP
-        ):
+        if self._anchor is None or is_nearer_than(self._anchor, STEP):
             if self._anchor is not None or self._since == -math.inf:
                 self._since = now
             self._anchor = here
