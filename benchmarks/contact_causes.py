@@ -32,7 +32,10 @@ Floats = npt.NDArray[np.float64]
 
 PARTS = {  # with people or discs that move: their suite
     "people_late": "people",
+    "people_none": "people",
+    "people_reactive": "people",
     "crowd_late": "crowd",
+    "crowd_none": "crowd",
     "dynabarn": "dynabarn",
     "dynabarn_slow": "dynabarn",
     "crowdnav": "crowdnav",
@@ -65,7 +68,7 @@ class Job(NamedTuple):
     suite: str
     number: int
     group: str
-    seed: int
+    options: Options
 
 
 def hits(episode: Episode, lidar: LidarSimulator, tick: int, person: int) -> tuple[bool, bool]:
@@ -129,7 +132,7 @@ def examined(episode: Episode, scenario: Scenario) -> dict[str, Any]:
 
 def examine(job: Job) -> dict[str, Any]:
     """Drives a mission again; its row."""
-    suite, options = load_suite(job.suite), Options(seed=job.seed)
+    suite, options = load_suite(job.suite), job.options
     with tempfile.TemporaryDirectory() as folder:
         row, episode = replay(job.suite, suite, options, job.number, 0, Path(folder))
     of = {"part": job.part, "suite": job.suite, "number": job.number, "group": job.group}
@@ -144,9 +147,13 @@ def jobs(folder: Path, seed: int) -> list[Job]:
     """The missions of all parts that ended with a contact while moving."""
     found = []
     for part, suite in PARTS.items():
-        result = json.loads((folder / f"{part}.json").read_text(encoding="utf-8"))
+        if not (file := folder / f"{part}.json").is_file():
+            continue  # its extra is not installed
+        result = json.loads(file.read_text(encoding="utf-8"))
+        walks_on = suite in ("people", "crowd") and result["attention"] == "none"
+        options = Options(seed=seed, attention="none" if walks_on else None)
         found += [
-            Job(part, suite, row["number"], row.get("group", ""), seed)
+            Job(part, suite, row["number"], row.get("group", ""), options)
             for row in result["rows"]
             if row.get("contacts_moving")
         ]

@@ -18,7 +18,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from dynastar.io.pedestrians import load_recording
-from dynastar.perception.prediction import WEIGHTS, PredictionConfig, predict
+from dynastar.perception.prediction import WEIGHTS, PredictionConfig, Times, predict
 from dynastar.perception.tracking import MovingObstacle
 from dynastar.perception.tracking_kernels import REST_SPEED
 
@@ -93,7 +93,7 @@ def by_speed(tracks: list[Floats]) -> str:
 def model(ahead: float) -> tuple[Floats, float, Floats]:
     """Of the prediction: the hypotheses' travel (s) at a time, the deviation (m), and the weights."""
     walks = MovingObstacle(0.0, 0.0, LEAST_SPEED, 0.0, 0.25)
-    one = predict([walks], PredictionConfig(), (0.0, ahead, 1))
+    one = predict([walks], PredictionConfig(), Times(0.0, ahead, 1))
     return one.travel[:, 0], float(one.deviation[0, 0]), WEIGHTS
 
 

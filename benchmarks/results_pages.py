@@ -5,14 +5,16 @@ and day it was measured; while parts are missing it names the blocks that are of
 """
 
 import shutil
-from collections.abc import Callable, Container, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import results_quality as quality
 import results_tables as tables
 import scoreboard_page as scoreboard
 import simulators_page as simulators
+from contact_causes import PARTS as CONTACT_PARTS
 from results_parts import INDIFFERENT, MAPS_BESIDE, parts
 from results_targets import TARGETS, targets_table
 
@@ -33,7 +35,7 @@ TABLES = {  # of the paper's page, by part
     "table3": ("table3-own", "table3", "table3-presets", "table3-driving"),
     "clutter": ("clutter", "walker"),
     "ladder": ("ladder",),
-    "ablation": ("terms", "ablation-paper", "ablation-people"),
+    "ablation": ("terms-cells", "terms-time", "terms", "ablation-paper", "ablation-people"),
 }
 PICTURES = {  # of the paper's page, by part
     "figures": tuple(FIGURES),
@@ -78,18 +80,25 @@ def failures(everything: Mapping[str, Any]) -> dict[str, dict[str, list[int]]]:
 
 
 VARIANTS = ("crowdnav", "crowdnav_variants", "crowdnav_orca")
-ATTENTION = ("people_late", "people_none", "crowd_late", "crowd_none")
+ATTENTION = ("people_late", "people_none", "people_reactive", "crowd_late", "crowd_none")
 ALL = {part.name: part for part in parts()}
 INDIFFERENTS = tuple(name for name in ALL if name.partition("-")[0] == INDIFFERENT)
-REACTIVE = ("people_reactive",) if "people_reactive" in ALL else ()
+
+
+def available(names: Iterable[str]) -> tuple[str, ...]:
+    """Those of some parts that can be run here: their extras are installed."""
+    return tuple(name for name in names if name in ALL)
+
+
 BLOCKS = (
     of_scoreboard("scoreboard", lambda of: scoreboard.scoreboard(of["suites"])),
     of_scoreboard("failures", lambda of: scoreboard.failures_table(failures(of))),
     of_scoreboard("limits", lambda of: scoreboard.limits_table(of["suites"])),
     of_scoreboard("controllers", scoreboard.controllers_table),
     of_scoreboard("pictures", lambda of: scoreboard.pictures(failures(of))),
-    Block(BENCHMARKS, "attention", (*ATTENTION, *REACTIVE), tables.attention_table),
-    Block(BENCHMARKS, "quality", ("maps", MAPS_BESIDE), tables.quality_table),
+    Block(BENCHMARKS, "attention", available(ATTENTION), tables.attention_table),
+    Block(BENCHMARKS, "quality", ("maps", MAPS_BESIDE), quality.quality_table),
+    Block(BENCHMARKS, "near", available(quality.AMONG_PEOPLE), quality.near_table),
     Block(BENCHMARKS, "crowdnav", VARIANTS, tables.crowdnav_table),
     Block(
         BENCHMARKS,
@@ -101,10 +110,10 @@ BLOCKS = (
     Block(
         BENCHMARKS,
         "targets",
-        tuple(dict.fromkeys(target.part for target in TARGETS)),
+        available(dict.fromkeys(target.part for target in TARGETS)),
         lambda found: targets_table(found, ALL),
     ),
-    Block(BENCHMARKS, "causes", ("contact_causes",), tables.causes_table),
+    Block(BENCHMARKS, "causes", ("contact_causes", *available(CONTACT_PARTS)), tables.causes_table),
     Block(BENCHMARKS, "irsim", ("irsim",), lambda found: simulators.irsim(found["irsim"])),
     Block(
         BENCHMARKS,

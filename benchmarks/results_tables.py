@@ -5,24 +5,25 @@ from collections.abc import Iterable, Mapping, Sequence
 from statistics import fmean
 from typing import Any
 
-from contact_causes import CAUSES
-from results_parts import INDIFFERENT, MAPS_BESIDE
+from contact_causes import CAUSES, PARTS
+from results_parts import INDIFFERENT
 from results_targets import contacts_of, counted, with_interval
 from scoreboard_page import beside
 
-from dynastar.bench.statistics import totals
+from dynastar.bench.pairs import interval_in_words
+from dynastar.bench.statistics import totals, wilson
 
 Result = Mapping[str, Any]
 Found = Mapping[str, Any]  # the result of each part
 
 LABELS = {"pure_pursuit": "pure pursuit", "kompass_dwa": "kompass DWA", "orca": "ORCA"}
 CROWDNAV = """\
-| ORCA [Chen2019] | 0.43 | 0.57 | 10.9 |
+| ORCA [Chen2019] | 0.43 | | 0.57 | 10.9 |
 {orca}
-| CADRL [Chen2019] | 0.78 | 0.22 | 10.8 |
-| LSTM-RL [Chen2019] | 0.95 | 0.03 | 11.8 |
-| SARL [Chen2019] | 0.99 | 0.01 | 10.6 |
-| OM-SARL [Chen2019] | 1.00 | 0.00 | 10.5 |
+| CADRL [Chen2019] | 0.78 | | 0.22 | 10.8 |
+| LSTM-RL [Chen2019] | 0.95 | | 0.03 | 11.8 |
+| SARL [Chen2019] | 0.99 | | 0.01 | 10.6 |
+| OM-SARL [Chen2019] | 1.00 | | 0.00 | 10.5 |
 {navigator}
 {told}"""
 VARIANTS = {
@@ -42,15 +43,6 @@ SLOW = """\
 | Dyna-LfLH [DynaLfLH] | | | | 0.225 |
 | LfH-CP [DynaLfLH] | | | | 0.308 |
 """
-QUALITY = {
-    "smoothness": "rad/s/m",
-    "angular_acceleration": "rad/s2",
-    "omega_changes": "1/m",
-    "jerk": "m/s3",
-    "circles": "in a mission",
-    "nearest": "m",
-    "time": "s",
-}
 MOTIONS = ("moving", "resting")
 COMPARED = {  # lines of the README: its suite of the scoreboard
     "BARN: static clutter (1)": "barn",
@@ -84,36 +76,14 @@ def attention_table(found: Found) -> str:
     return table([*titles, "at rest", "bumps", "stops", "time ratio"], lines)
 
 
-def quality_table(found: Found) -> str:
-    """Means of the navigator and of `pure_pursuit` in `maps`, over missions in which both arrived."""
-    pairs = [
-        pair
-        for pair in zip(found["maps"]["rows"], found[MAPS_BESIDE]["rows"], strict=True)
-        if all(row["outcome"] == "arrived" for row in pair)
-    ]
-    lines = []
-    for key, unit in QUALITY.items():
-        known = [[row[key] for row in pair] for pair in pairs]
-        known = [pair for pair in known if None not in pair]
-        if not known:
-            lines.append((f"`{key}`, {unit}", "", "", ""))
-            continue
-        ours, other = (fmean(values) for values in zip(*known, strict=True))
-        ratio = f"{ours / other:.2f}" if other else ""
-        if key == "smoothness":
-            ratio += ": met" if ours <= 1.2 * other else ": missed"
-        lines.append((f"`{key}`, {unit}", f"{ours:.2f}", f"{other:.2f}", ratio))
-    head = (f"means of {len(pairs)} missions", "`navigator`", "`pure_pursuit`", "ratio")
-    return table(head, lines)
-
-
 def crowdnav_table(found: Found) -> str:
     """Published rows, and the navigator and ORCA on the published cases."""
 
     def line(name: str, of: Result) -> str:
         contacts = (of["contacts_moving"] + of["contacts_resting"]) / of["missions"]
         success = of["succeeded"] / of["missions"]
-        return f"| {name} | {success:.3f} | {contacts:.3f} | {of['mean_time']:.1f} |"
+        interval = interval_in_words(wilson(of["succeeded"], of["missions"]), 1.0, ".3f")
+        return f"| {name} | {success:.3f} | {interval} | {contacts:.3f} | {of['mean_time']:.1f} |"
 
     ours, orca = found["crowdnav"], found["crowdnav_orca"]
     told = totals([row for row in found["crowdnav_variants"]["rows"] if row["group"] == "told"], 0)
@@ -123,7 +93,7 @@ def crowdnav_table(found: Found) -> str:
         navigator=line(f"navigator, by lidar, {cases}", ours),
         told=line(f"navigator, told positions and velocities, {told['missions']} cases", told),
     )
-    head = table(("", "success", "collisions", "time, s"), ())
+    head = table(("", "success", "95 %", "collisions", "time, s"), ())
     return (
         f"{head}\n{lines}\n\nThe navigator succeeds in {counted(ours)}; "
         f"{contacts_of(ours) or 'no contact'}. It is nearer than 0.2 m to somebody for "
@@ -264,4 +234,10 @@ def causes_table(found: Found) -> str:
             ", ".join(str(row["number"]) for row in of if row["part"] == part) for part in parts
         ]
         lines.append((words, str(len(of)), *cells))
-    return table(("who was hit", "all", *(f"`{part}`" for part in parts)), lines)
+    hit = table(("who was hit", "all", *(f"`{part}`" for part in parts)), lines)
+    struck = []
+    for part in (part for part in PARTS if part in found):
+        which = [str(row["number"]) for row in found[part]["rows"] if row["contacts_resting"]]
+        struck += [(f"`{part}`", str(len(which)), ", ".join(which))] if which else []
+    resting = table(("walked into while it stood", "all", "missions"), struck)
+    return f"{hit}\n\n{resting}"

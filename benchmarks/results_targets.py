@@ -11,8 +11,11 @@ Result = Mapping[str, Any]
 Measured = tuple[str, bool]  # in words, and whether the target is met
 
 CHALLENGE = {"easy": (0.98, 0.01), "medium": (0.96, 0.02), "hard": (0.80, 0.06)}  # of DynaBARN
-
-
+TD3 = {
+    "easy": 0.74,
+    "medium": 0.60,
+    "hard": 0.28,
+}  # on DynaBARN at 0.5 m/s, as [DynaBARN] quotes it
 NEAR = 0.05  # share of the time
 
 
@@ -117,6 +120,13 @@ def dynabarn(result: Result) -> Measured:
     return "; ".join(words), met
 
 
+def dynabarn_slow(result: Result) -> Measured:
+    """Successes by difficulty."""
+    groups = {name: result["groups"][f"{name} 0.5 m/s"] for name in TD3}
+    met = all(of["succeeded"] > TD3[name] * of["missions"] for name, of in groups.items())
+    return "; ".join(map(counted, groups.values())), met
+
+
 def office(result: Result) -> Measured:
     """Successes, contacts, the mean time and the longest of those that arrived."""
     longest = max(row["time"] for row in result["rows"] if row["outcome"] == "arrived")
@@ -131,9 +141,11 @@ def office(result: Result) -> Measured:
 def table3(result: Result) -> Measured:
     """Shares of arrivals and of moving contacts."""
     of = result["table3"]
-    arrived, moving = (100.0 * of[key] / of["missions"] for key in ("arrived", "contacts_moving"))
-    met = arrived >= 99.5 and moving <= 0.2
-    return f"{arrived:.1f} %, {moving:.1f} % of {of['missions']}", met
+    arrived, moving = (
+        with_interval(of[key], of["missions"]) for key in ("arrived", "contacts_moving")
+    )
+    met = of["arrived"] >= 0.99 * of["missions"] and of["contacts_moving"] <= 0.003 * of["missions"]
+    return f"{arrived}, {moving} moving contacts", met
 
 
 def ratio(name: str, **most: float) -> Callable[[Result], Measured]:
@@ -154,6 +166,12 @@ TARGETS = (
         "dynabarn",
         "98, 96, 80 %; 1, 2, 6 %",
         dynabarn,
+    ),
+    Target(
+        "the same at 0.5 m/s: ahead of TD3, the best published",
+        "dynabarn_slow",
+        "74, 60, 28 %",
+        dynabarn_slow,
     ),
     Target("MRPB: arrived, time over the bound", "mrpb", "all, 1.3", missions(1.0, 1.3)),
     Target(
@@ -214,8 +232,9 @@ TARGETS = (
         among_people(0.88, 0.05),
     ),
     Target("people who do not react", "people_none", "72 %, 10 %", among_people(0.72, 0.1)),
+    Target("people who react", "people_reactive", "99 %, 0", among_people(0.99, 0.0)),
     Target("faults of sensors, odometry, clock, drive, map", "faults", "all", missions(1.0)),
-    Target("worlds like the paper's: arrived, moving contacts", "table3", "99.5 %, 0.2 %", table3),
+    Target("worlds like the paper's: arrived, moving contacts", "table3", "99 %, 0.3 %", table3),
     Target("MovingAI: optimal length found", "movingai", "all", missions(1.0)),
     Target(
         "cells expanded over traditional A*, 1000 maps, median",
@@ -241,7 +260,7 @@ TARGETS = (
 def targets_table(found: Mapping[str, Result], parts: Mapping[str, Part]) -> str:
     """A line for each target, with the command of its part."""
     lines = ["| what | command | target | measured |", "|:--|:--|:--|:--|"]
-    for target in TARGETS:
+    for target in (target for target in TARGETS if target.part in parts):
         words, met = target.measured(found[target.part])
         shown = f"`{parts[target.part].shown}`"
         lines.append(

@@ -17,7 +17,7 @@ from dynastar.guidance.marching import Seed, extend, march, queue_for
 from dynastar.perception import PredictionConfig
 from dynastar.perception.hidden import Hidden
 from dynastar.perception.local_map_kernels import BOX
-from dynastar.perception.prediction import predict
+from dynastar.perception.prediction import Times, predict
 
 CELL, SIDE = 0.05, 160  # 8 x 8 m, from (0, 0)
 PERIOD = 0.1  # s between commands
@@ -108,7 +108,7 @@ def scene_of(closed, goal=(7.0, 4.0), moving=(), radius=0.3, margin=0.05, latenc
     distance = field_of(closed)
     around = Surroundings(
         closed=closed_space(closed),
-        moving=predict(moving, PredictionConfig(), (latency, STEP, STEPS)),
+        moving=predict(moving, PredictionConfig(), Times(latency, STEP, STEPS)),
         hidden=others.pop("hidden", NOTHING_HIDDEN),
         margin_to_closed=margin,
         latency=latency,

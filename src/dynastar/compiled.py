@@ -157,7 +157,7 @@ def inner(function: Callable[..., Any]) -> Any:
 
     It has no wrapper for Python, and numba counts no references to the arrays that it reads: that
     counting takes more than half of the time of roll-outs. Python code must not call such a kernel:
-    numba would crash. Tests set ``DYNASTAR_CALLABLE_KERNELS`` to call them all the same.
+    numba would crash. Tests set ``DYNASTAR_CALLABLE_KERNELS`` to call them nevertheless.
     """
     kernel = _unwrapped(function, counts_references=False)
     add_overload = kernel.add_overload

@@ -232,8 +232,10 @@ def test_the_terms_are_measured_on_maps_of_each_kind(tmp_path):
     assert found["octile A*"]["expanded_ratio"]["worst"] <= 1.0
     assert found["weighted A*, w = 2"]["expanded_ratio"]["mean"] < 1.0
     assert found["weighted A*, w = 2"]["length_ratio"]["worst"] <= 2.0
-    (table,) = terms.tables(rows)
-    assert len(table.cells) == 1 + len(terms.ARMS)
+    *by_kind, pool = terms.tables(rows)
+    assert all(len(table.cells) == 1 + len(terms.ARMS) for table in (*by_kind, pool))
+    assert by_kind[0].cells[0][1:] == list(terms.KINDS)
+    assert by_kind[0].cells[1][1].startswith("1.000 (")
     before = (tmp_path / "out" / "terms.jsonl").read_text()
     assert terms.run(6, 0, tmp_path / "out", size=24) == rows
     assert (tmp_path / "out" / "terms.jsonl").read_text() == before

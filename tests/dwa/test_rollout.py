@@ -43,11 +43,11 @@ def test_the_schedule_has_every_step_while_a_sample_is_held_and_then_every_secon
     assert schedule.step.tolist() == rows
     durations = [0.1 * (after - before) for before, after in pairwise([0, *rows])]
     assert schedule.duration == pytest.approx(durations)
-    for look, row in enumerate(schedule.looks):  # the first row at or after each eighth
+    for look, row in enumerate(schedule.lookups):  # the first row at or after each eighth
         due = (look + 1) * n
         assert rows[row] >= due
         assert row == 0 or rows[row - 1] < due
-    assert (schedule.held, schedule.period, len(schedule.looks)) == (held, 0.1, looks)
+    assert (schedule.held, schedule.period, len(schedule.lookups)) == (held, 0.1, looks)
 
 
 def rolled(scene, rules, state, manoeuvre):

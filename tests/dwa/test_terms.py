@@ -15,7 +15,7 @@ from dynastar.dwa.scene import FOLLOW, Manoeuvre
 from dynastar.footprint import Footprint
 from dynastar.guidance.cost_to_go import turn_to_descent, value_at
 from dynastar.perception import MovingObstacle, PredictionConfig
-from dynastar.perception.prediction import WEIGHTS, predict
+from dynastar.perception.prediction import WEIGHTS, Times, predict
 from dynastar.perception.tracking_kernels import REST_SPEED
 from dynastar.robot import ROBOTS, Limits, Robot, slew
 from scenes import STEP, STEPS, boxed, empty, field_of, rules_for, scene_of, start_of
@@ -83,7 +83,7 @@ def test_progress_is_the_mean_decrease_of_the_cost_to_go_over_what_is_possible(s
     random = np.random.default_rng(seed)
     rows, start = random_rows(random), random_start(random)
     values, fell = [start.cost_to_go], 0.0
-    for row in rows.view(np.recarray)[SCHEDULE.looks]:
+    for row in rows.view(np.recarray)[SCHEDULE.lookups]:
         if row.on_map:
             fell = values[-1] - slow_value(row)
         values.append(values[-1] - fell)
@@ -123,7 +123,7 @@ def slow_farthest(v, duration, parts=2000):
 @given(st.floats(0.0, 1.0), st.floats(0.0, 10.0))
 @settings(deadline=None, max_examples=10)
 def test_the_most_progress_is_that_of_full_acceleration_on_free_ground(v, cost_to_go):
-    times = 0.1 * SCHEDULE.step[-1] / t.LOOKS * np.arange(1, t.LOOKS + 1)
+    times = 0.1 * SCHEDULE.step[-1] / t.LOOKUPS * np.arange(1, t.LOOKUPS + 1)
     driven = [slow_farthest(v, float(time)) for time in times]
     expected = max(np.minimum(driven, cost_to_go).mean(), 0.1)
     assert t.most_progress(RULES, v, cost_to_go) == pytest.approx(expected, abs=1e-3)
@@ -155,7 +155,7 @@ def test_simi_is_one_less_the_mean_distance_from_the_path(seed):
     off_path = np.ones((160, 160), bool)
     off_path[100] = False  # a path along y = 5.025 m
     found = t.simi(field_of(~off_path), RULES, rows)
-    distances = np.minimum(np.abs(rows["y"][SCHEDULE.looks] - 5.025), 1.0)
+    distances = np.minimum(np.abs(rows["y"][SCHEDULE.lookups] - 5.025), 1.0)
     assert found == pytest.approx(1.0 - distances.mean(), abs=0.03)
     assert 0.0 <= found <= 1.0
 
@@ -182,7 +182,7 @@ def test_risk_is_the_worst_discounted_probability_of_each_hypothesis(seed):
     random = np.random.default_rng(seed)
     obstacles, rows = random_obstacles(random), random_rows(random)
     config, latency = PredictionConfig(), 0.2
-    moving = predict(obstacles, config, (latency, STEP, STEPS))
+    moving = predict(obstacles, config, Times(latency, STEP, STEPS))
     places = np.column_stack([rows["x"], rows["y"]])
     after = STEP * SCHEDULE.step
     ahead = latency + after
@@ -197,7 +197,7 @@ def test_risk_is_the_worst_discounted_probability_of_each_hypothesis(seed):
             p = np.exp(-after / config.memory) / (1.0 + np.exp(1.702 * gaps / deviation))
             expected += weight * np.where(gaps < 3.0 * deviation, p, 0.0).max()
     assert t.risk(moving, RULES, rows) == pytest.approx(expected, abs=1e-9)
-    assert t.risk(predict([], config, (0.0, STEP, STEPS)), RULES, rows) == 0.0
+    assert t.risk(predict([], config, Times(0.0, STEP, STEPS)), RULES, rows) == 0.0
 
 
 @given(seeds, st.floats(0.0, 6.0))
@@ -207,7 +207,7 @@ def test_a_manoeuvre_passes_clear_if_no_obstacle_at_its_velocity_touches_for_so_
     obstacles, rows = random_obstacles(random, 2), random_rows(random)
     rows["x"], rows["y"] = np.linspace(1.0, 4.0, len(rows)), 4.0
     latency, times = 0.1, STEP * SCHEDULE.step
-    moving = predict(obstacles, PredictionConfig(), (latency, STEP, STEPS))
+    moving = predict(obstacles, PredictionConfig(), Times(latency, STEP, STEPS))
     clear, until = True, next((time for time in times if time >= wanted), math.inf)
     for time, row in zip(times, rows.view(np.recarray), strict=True):
         for x, y, vx, vy, radius in obstacles:

@@ -9,11 +9,11 @@ from dynastar.guidance import Encounter, Guidance, PathTarget
 from dynastar.guidance.guidance import FACTOR
 from dynastar.path import Path
 from dynastar.perception import MovingObstacle, PredictionConfig
-from dynastar.perception.prediction import predict
+from dynastar.perception.prediction import Times, predict
 
 CELL, SIDE, MARGIN, COMFORT = 0.05, 200, 0.3, 0.25  # 10 x 10 m, from (0, 0)
 HERE = 5.0, 5.0
-TIMES = 0.0, 0.1, 40
+TIMES = Times(0.0, 0.1, 40)
 NOTHING = predict([], PredictionConfig(), TIMES)
 
 

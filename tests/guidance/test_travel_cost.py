@@ -14,7 +14,7 @@ from dynastar.guidance.travel_cost import (
     travel_cost,
 )
 from dynastar.perception import MovingObstacle, PredictionConfig
-from dynastar.perception.prediction import WEIGHTS, predict
+from dynastar.perception.prediction import WEIGHTS, Times, predict
 
 A = 0.1
 CONFIG = PredictionConfig()
@@ -36,7 +36,7 @@ def test_the_cost_of_a_metre_rises_towards_obstacles(seed):
 
 def test_a_moving_obstacle_costs_where_and_when_the_robot_meets_it():
     """It crosses ahead; the robot arrives when it is at (3.05, 2), not when it was before that."""
-    moving = predict([MovingObstacle(3.05, 0.5, 0.0, 0.5, 0.3)], CONFIG, (0.0, 0.1, 40))
+    moving = predict([MovingObstacle(3.05, 0.5, 0.0, 0.5, 0.3)], CONFIG, Times(0.0, 0.1, 40))
     encounter, cost = Encounter(0.05, 2.0, 1.0, 0.3, 0.0, 0.1, 1.0), cost_of(40, 60)
     add_encounters(cost, moving, encounter)
     at_most = math.exp(-3.0 / CONFIG.memory) * ENCOUNTER_COST
@@ -45,7 +45,7 @@ def test_a_moving_obstacle_costs_where_and_when_the_robot_meets_it():
     assert cost.values[20, 10] == 1.0  # the robot passes there before it comes
     assert cost.values.max() <= 1.0 + ENCOUNTER_COST + 1e-9
     alone = cost_of(40, 60)
-    add_encounters(alone, predict([], CONFIG, (0.0, 0.1, 40)), encounter)
+    add_encounters(alone, predict([], CONFIG, Times(0.0, 0.1, 40)), encounter)
     assert (alone.values == 1.0).all()
 
 
@@ -58,7 +58,7 @@ def test_every_cell_costs_what_all_encounters_on_arrival_do(seed):
         for _ in range(4)
     ]
     latency, step, steps = 0.05, 0.1, 30
-    moving = predict(obstacles, CONFIG, (latency, step, steps))
+    moving = predict(obstacles, CONFIG, Times(latency, step, steps))
     place, speed, cost = (1.5, 1.0), 0.9, cost_of(20, 30)
     discount = math.exp(-latency / CONFIG.memory)
     add_encounters(cost, moving, Encounter(*place, speed, 0.3, latency, step, discount))

@@ -102,9 +102,9 @@ def test_stops_are_certified_for_every_latency_up_to_the_declared_one(latency):
         sent.append((state.stamp, command))
     state = RobotState(3 * period, pose, twist)
     acting = commands.when_one_acts(state)
-    stops = commands.stops_from(state, acting, commands.carried_on(acting[1]))
+    stops = commands.stops_from(state, acting, commands.carried_on(acting.twist))
     assert len(stops) == 2 * (1 + 3 * math.ceil(latency / 0.1))  # as measured, and as told
-    assert stops[-1].pose == acting[0]
+    assert stops[-1].pose == acting.pose
     for true in np.linspace(0.0, latency, 6):
         expected, _ = commands.when_one_acts(state, float(true))
         near = min(math.dist(expected[:2], stop.pose[:2]) for stop in stops)
@@ -124,9 +124,9 @@ def test_commands_under_way_may_act_alone_until_the_next_one_acts():
         commands.send(RobotState(k * period, pose, twist), Twist(0.5, omega))
     state = RobotState(3 * period, pose, twist)
     acting = commands.when_one_acts(state)
-    headings = [stop.pose.theta for stop in commands.stops_from(state, acting, acting[1])]
+    headings = [stop.pose.theta for stop in commands.stops_from(state, acting, acting.twist)]
     assert min(headings) == pytest.approx(0.0)  # the oldest alone: straight on
-    assert max(headings) > acting[0].theta + 0.05  # the newest alone turns more than expected
+    assert max(headings) > acting.pose.theta + 0.05  # the newest alone turns more than expected
 
 
 @pytest.mark.parametrize(("declared", "true"), [(0.3, 0.0), (0.3, 0.1), (0.2, 0.2)])

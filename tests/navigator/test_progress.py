@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dynastar.navigator.progress import LEAP, STEP, Progress
+from dynastar.navigator.progress import RESTART, STEP, Progress
 
 
 def towards(goal, offset=0.0):
@@ -61,9 +61,9 @@ def test_each_further_patience_is_another_round():
 def test_the_rounds_start_over_after_a_leap():
     progress = Progress(3.0)
     times_stuck(progress, [0.0] * 5)
-    assert not progress.stuck(5.0, (0.9 * LEAP, 0.0), towards(50.0))
+    assert not progress.stuck(5.0, (0.9 * RESTART, 0.0), towards(50.0))
     assert progress.rounds == 1
-    assert not progress.stuck(6.0, (1.1 * LEAP, 0.0), towards(50.0))
+    assert not progress.stuck(6.0, (1.1 * RESTART, 0.0), towards(50.0))
     assert progress.rounds == 0
 
 
@@ -108,7 +108,7 @@ def test_rounds_without_a_path_count_until_the_next_goal():
     for k in range(9):
         progress.stuck(float(k), (0.0, 0.0), None)
     assert (progress.rounds, progress.pathless_rounds) == (2, 2)
-    for k in range(9, 9 + round(3.0 * LEAP)):
+    for k in range(9, 9 + round(3.0 * RESTART)):
         progress.stuck(float(k), (k - 9.0, 0.0), towards(50.0))
     assert (progress.rounds, progress.pathless_rounds) == (0, 2)
     progress.reset()

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dynastar.perception import MovingObstacle, PredictionConfig
-from dynastar.perception.prediction import WEIGHTS, contact_probability, predict
+from dynastar.perception.prediction import WEIGHTS, Times, contact_probability, predict
 
 CONFIG = PredictionConfig()
 CONTINUES, STOPS, TURNS_BACK = range(3)
@@ -22,7 +22,7 @@ def positions(moving, m, hypothesis):
 @given(*[st.floats(-2, 2)] * 4, st.floats(0, 0.5), st.sampled_from([0.05, 0.1]))
 @settings(deadline=None)
 def test_an_obstacle_that_continues_or_turns_back_keeps_its_speed(x, y, vx, vy, begin, step):
-    moving = predict([MovingObstacle(x, y, vx, vy, 0.3)], CONFIG, (begin, step, 30))
+    moving = predict([MovingObstacle(x, y, vx, vy, 0.3)], CONFIG, Times(begin, step, 30))
     times = begin + step * np.arange(1, 31)
     for hypothesis, sign in ((CONTINUES, 1.0), (TURNS_BACK, -1.0)):
         expected = np.column_stack([x + sign * vx * times, y + sign * vy * times])
@@ -30,7 +30,7 @@ def test_an_obstacle_that_continues_or_turns_back_keeps_its_speed(x, y, vx, vy, 
 
 
 def test_an_obstacle_that_stops_comes_to_rest_half_a_second_of_way_ahead():
-    moving = predict([MovingObstacle(0.0, 0.0, 1.2, -0.6, 0.3)], CONFIG, (0.0, 0.1, 60))
+    moving = predict([MovingObstacle(0.0, 0.0, 1.2, -0.6, 0.3)], CONFIG, Times(0.0, 0.1, 60))
     stops = positions(moving, 0, STOPS)
     assert stops[-1] == pytest.approx((0.6, -0.3), abs=1e-3)
     speeds = np.hypot(*np.diff(stops, axis=0).T) / 0.1
@@ -40,7 +40,7 @@ def test_an_obstacle_that_stops_comes_to_rest_half_a_second_of_way_ahead():
 
 
 def test_the_deviation_grows_to_a_limit_and_the_weights_add_up():
-    moving = predict([MovingObstacle(0.0, 0.0, 1.0, 0.0, 0.3)], CONFIG, (0.2, 0.1, 30))
+    moving = predict([MovingObstacle(0.0, 0.0, 1.0, 0.0, 0.3)], CONFIG, Times(0.2, 0.1, 30))
     ahead = 0.2 + 0.1 * np.arange(1, 31)
     [deviation] = moving.deviation
     assert deviation == pytest.approx(CONFIG.error + CONFIG.spread * (1.0 - np.exp(-ahead)))
@@ -50,23 +50,23 @@ def test_the_deviation_grows_to_a_limit_and_the_weights_add_up():
 
 @pytest.mark.parametrize(("speed", "share"), [(0.0, 0.0), (0.06, 0.5), (0.12, 1.0), (2.0, 1.0)])
 def test_the_deviation_of_an_obstacle_at_rest_does_not_grow(speed, share):
-    moving = predict([MovingObstacle(0.0, 0.0, 0.0, -speed, 0.3)], CONFIG, (0.0, 0.1, 30))
+    moving = predict([MovingObstacle(0.0, 0.0, 0.0, -speed, 0.3)], CONFIG, Times(0.0, 0.1, 30))
     most = CONFIG.spread * (1.0 - math.exp(-3.0))
     assert moving.deviation[0, -1] == pytest.approx(CONFIG.error + share * most)
 
 
 def test_risk_is_discounted_from_when_a_command_acts():
-    moving = predict([], CONFIG, (0.5, 0.1, 20))
+    moving = predict([], CONFIG, Times(0.5, 0.1, 20))
     assert moving.discount == pytest.approx(np.exp(-0.1 * np.arange(1, 21) / CONFIG.memory))
 
 
 def test_the_hard_bound_is_that_of_the_settings():
-    moving = predict([], CONFIG._replace(acceleration=2.5), (0.0, 0.1, 10))
+    moving = predict([], CONFIG._replace(acceleration=2.5), Times(0.0, 0.1, 10))
     assert moving.acceleration == 2.5
 
 
 def test_without_moving_obstacles_a_prediction_is_empty():
-    moving = predict([], CONFIG, (0.0, 0.1, 10))
+    moving = predict([], CONFIG, Times(0.0, 0.1, 10))
     assert moving.obstacles.shape == (0,)
     assert moving.obstacles.dtype.names == ("x", "y", "vx", "vy", "radius")
     assert moving.travel.shape == (3, 10)
@@ -74,7 +74,7 @@ def test_without_moving_obstacles_a_prediction_is_empty():
 
 def test_tracks_are_taken_as_they_are():
     tracks = [MovingObstacle(1.0, 2.0, 0.3, 0.4, 0.25), MovingObstacle(5.0, 6.0, 0.0, 0.0, 0.5)]
-    moving = predict(tracks, CONFIG, (0.0, 0.1, 10))
+    moving = predict(tracks, CONFIG, Times(0.0, 0.1, 10))
     assert moving.obstacles.tolist() == [tuple(track) for track in tracks]
 
 

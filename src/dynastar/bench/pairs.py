@@ -90,3 +90,9 @@ def interval_in_words(interval: Interval | None, times: float, format_: str) -> 
         return None
     low, high = (format(times * end, format_) for end in interval)
     return f"{low} to {high}"
+
+
+def median_in_words(values: Sequence[float]) -> str:
+    """A median with its bootstrap interval, as the tables have it."""
+    interval = interval_in_words(bootstrap(values, np.median), 1.0, ".3f")
+    return f"{np.median(values):.3f}" + (f" ({interval})" if interval else "")

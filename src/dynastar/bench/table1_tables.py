@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from dynastar.bench.families import KINDS
-from dynastar.bench.pairs import interval_in_words
+from dynastar.bench.pairs import interval_in_words, median_in_words
 from dynastar.bench.statistics import bootstrap
 from dynastar.bench.table1 import LARGE, SIZE, Row, ratios, summary
 from dynastar.bench.tables import Cell, Table
@@ -116,7 +116,7 @@ def _by_kind(name: str, rows: Sequence[Row], size: int) -> Table:
     lines: list[tuple[Cell, ...]] = [
         (
             words,
-            *(_median(values[kind][ratio]) for kind in kinds),
+            *(median_in_words(values[kind][ratio]) for kind in kinds),
             *(found["all"][ratio][what] for what in ("p95", "worst")),
             PRINTED_RATIOS.get(ratio) if size == SIZE else None,
         )
@@ -160,8 +160,3 @@ def _spread(values: Sequence[float]) -> tuple[Cell, ...]:
     """The quantiles of ``FIVE``, and the interval of the median."""
     quantiles = np.quantile(values, (0.25, 0.5, 0.75, 0.95, 1.0))
     return (*map(float, quantiles), interval_in_words(bootstrap(values, np.median), 1.0, ".3f"))
-
-
-def _median(values: Sequence[float]) -> str:
-    interval = interval_in_words(bootstrap(values, np.median), 1.0, ".3f")
-    return f"{np.median(values):.3f}" + (f" ({interval})" if interval else "")

@@ -11,6 +11,7 @@ import numpy as np
 
 from dynastar.bench.arms import PLAIN, TERMS
 from dynastar.bench.families import KINDS, Map, draw
+from dynastar.bench.pairs import median_in_words
 from dynastar.bench.rows import collect
 from dynastar.bench.tables import Cell, Table, spread_of
 from dynastar.bench.versions import code_version
@@ -72,22 +73,41 @@ def summary(rows: Sequence[Row]) -> dict[str, dict[str, dict[str, float]]]:
 
 
 def tables(rows: Sequence[Row]) -> list[Table]:
-    """One line for each arm."""
+    """Cells and time by kind of map, then all maps together; a line for each arm."""
+    cells = _by_kind(rows, "expanded", "terms-cells", "Cells expanded")
+    seconds = _by_kind(rows, "seconds", "terms-time", "Time of the search")
+    return [cells, seconds, _pool(rows)]
+
+
+def _by_kind(rows: Sequence[Row], what: str, name: str, title: str) -> Table:
+    lines: list[tuple[Cell, ...]] = []
+    for arm in ARMS:
+        of = {kind: [row for row in rows if row["kind"] == kind] for kind in KINDS}
+        ratios = [[row[arm][what] / row[BASE][what] for row in of[kind]] for kind in KINDS]
+        lines.append((arm, *map(median_in_words, ratios)))
+    return Table(
+        name,
+        f"{title} by kind of map, over the traditional A*: median and bootstrap interval",
+        (("", ""), *((kind, ">") for kind in KINDS)),
+        lines,
+        f"{len(rows) // len(KINDS)} maps of each kind.",
+    )
+
+
+def _pool(rows: Sequence[Row]) -> Table:
     shown = ("median", "mean", "worst")
     lines: list[tuple[Cell, ...]] = [
         (arm, *(ratios[f"{what}_ratio"][name] for what in MEASURED for name in shown))
         for arm, ratios in summary(rows).items()
     ]
     headings = [f"{what}, {name}" for what in ("cells", "length", "time") for name in shown]
-    return [
-        Table(
-            "terms",
-            f"The terms of Eq. 2 on {len(rows)} maps, over the traditional A*",
-            (("", ""), *((heading, ".3f") for heading in headings)),
-            lines,
-            "Cells expanded, length of the grid path and time of the search, on one kernel.",
-        )
-    ]
+    return Table(
+        "terms",
+        f"The terms of Eq. 2 on {len(rows)} maps, over the traditional A*",
+        (("", ""), *((heading, ".3f") for heading in headings)),
+        lines,
+        "Cells expanded, length of the grid path and time of the search, on one kernel.",
+    )
 
 
 def _numbers(kind: str, some: int, seed: int, size: int) -> Iterator[int]:

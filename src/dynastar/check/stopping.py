@@ -8,7 +8,7 @@ import shapely
 
 from dynastar.footprint import Footprint
 from dynastar.navigator.config import NavigatorConfig, fitted, margin_of
-from dynastar.perception.hidden import SLACK
+from dynastar.perception.hidden import APPROACH
 from dynastar.perception.local_map import OFF_CENTRE
 from dynastar.robot import Lidar, Limits, Robot
 
@@ -106,11 +106,13 @@ def room_ahead(robot: Robot, config: NavigatorConfig) -> float:
 def fastest_near_people(robot: Robot, config: NavigatorConfig) -> float:
     """The speed (m/s) from which the robot rests before somebody comes to it from where it sees no more.
 
-    They walk at ``hidden_speed`` as soon as a command is given, and may come nearer by SLACK.
+    They walk at ``hidden_speed`` as soon as a command is given, and may come nearer by APPROACH.
     """
     limits, walks = robot.limits, config.hidden_speed
     brake = limits.v_brake / (1.0 + config.drive_error)  # as commanded
-    way = sight_of(robot, config).ahead - front_of(robot.footprint) + SLACK - walks * config.period
+    way = (
+        sight_of(robot, config).ahead - front_of(robot.footprint) + APPROACH - walks * config.period
+    )
     delay = config.latency + config.period + walks / brake
     return min(limits.v_max, _fastest(way, delay, brake))
 

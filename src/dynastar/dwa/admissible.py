@@ -8,7 +8,7 @@ import math
 from dynastar.compiled import inner, njit
 from dynastar.dwa.clearance import ROUNDING, body_distance, clearance_slack, least_clearance
 from dynastar.dwa.motion import State, driven, moved, parts_of, ramped_both, state_of, stopping_time
-from dynastar.perception.hidden import HIDDEN_RADIUS, SLACK
+from dynastar.perception.hidden import APPROACH, HIDDEN_RADIUS
 from dynastar.perception.prediction import TRACKING_ERROR
 
 ADMISSIBLE, NO_STOP, MOVING, HIDDEN = range(4)
@@ -103,10 +103,10 @@ def stop_keeps_clear(around, rules, state, held, gains, ends_early):
             state = State(start, *speeds)
         else:
             length, angle = stop_part(state, limits, ends_early, part - parts)
-        arc = v_gain * length, omega_gain * angle
-        if not keeps_clear(closed, body, margin, start, pose, arc):
+        length, angle = v_gain * length, omega_gain * angle
+        if not keeps_clear(closed, body, margin, start, pose, (length, angle)):
             return False
-        pose = moved(pose, arc[0], arc[1])
+        pose = moved(pose, length, angle)
     return True
 
 
@@ -120,17 +120,18 @@ def stop_part(state, limits, ends_early, part):
     stop = stopping_time(v, omega, limits)
     if not ends_early:
         return 0.5 * stop * v, 0.5 * stop * omega
-    share_v, share_omega = least_share(v, limits.v_least), least_share(omega, limits.omega_least)
-    v_ends, share = share_v >= share_omega, max(share_v, share_omega)
-    brakes = share * (abs(v) / limits.v_brake if v_ends else abs(omega) / limits.omega_brake)
-    shares = (1.0, share, max(0.0, share - brakes / max(stop, 1e-9)), 0.0)
-    on_ramp = 0.5 * stop * (shares[part] ** 2 - shares[part + 1] ** 2)
-    alone = (on_ramp, 0.5 * brakes * share, 0.0)[part]
+    fraction_v = least_fraction(v, limits.v_least)
+    fraction_omega = least_fraction(omega, limits.omega_least)
+    v_ends, fraction = fraction_v >= fraction_omega, max(fraction_v, fraction_omega)
+    brakes = fraction * (abs(v) / limits.v_brake if v_ends else abs(omega) / limits.omega_brake)
+    fractions = (1.0, fraction, max(0.0, fraction - brakes / max(stop, 1e-9)), 0.0)
+    on_ramp = 0.5 * stop * (fractions[part] ** 2 - fractions[part + 1] ** 2)
+    alone = (on_ramp, 0.5 * brakes * fraction, 0.0)[part]
     return (alone if v_ends else on_ramp) * v, (on_ramp if v_ends else alone) * omega
 
 
 @inner
-def least_share(speed, least):
+def least_fraction(speed, least):
     """The fraction of a ``speed`` at which its dead band begins, 1 if it lies in it."""
     return min(1.0, least / abs(speed)) if speed != 0.0 else 0.0
 
@@ -161,7 +162,7 @@ def rests_in_time(around, rules, state, command):
             done = 0.5 * stop * (1.0 - left * left)
             pose = moved(after.pose, after.v * done, after.omega * done)
         if hidden.speed > 0.0:
-            need = hidden.speed * t - SLACK
+            need = hidden.speed * t - APPROACH
             gap = hidden_gap(hidden, body, pose, need)
             if gap < need:
                 at_start = hidden_gap(hidden, body, start, need)

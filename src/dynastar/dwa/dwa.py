@@ -16,7 +16,7 @@ from dynastar.dwa.nearest import nearest_admissible
 from dynastar.dwa.rollout import ROW, Schedule, schedule_of
 from dynastar.dwa.scene import AT_REST, Manoeuvre, Scene, Surroundings
 from dynastar.dwa.search import CANDIDATE, SAMPLES, search
-from dynastar.dwa.terms import LOOKS, Terms
+from dynastar.dwa.terms import LOOKUPS, Terms
 from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, Twist
 from dynastar.robot import Limits, Robot
@@ -41,7 +41,7 @@ REFUSALS = {
 }
 PROBES_APART = 0.3  # m between the points that stand for a polygon's outline, at most
 SAMPLED = 50  # points from the centre to the rim of a footprint, for the error of its probes
-STEP = 0.1  # s between the points of a roll-out, at most
+LONGEST_STEP = 0.1  # s between the points of a roll-out, at most
 LONG_HOLD = 1.5  # s that a sample is held for at the longest
 FULL_SPEED = 0.95  # of a speed limit, from which on the robot drives at it
 
@@ -112,16 +112,16 @@ def _probe_error(shape: Footprint, probes: Floats) -> float:
 
 def rules_of(robot: Robot, config: DwaConfig, period: float, drive_error: float = 0.0) -> Rules:
     """What the kernels need to know of a robot, its settings and the time between commands (s)."""
-    step = min(STEP, config.arc_time / 4)
+    step = min(LONGEST_STEP, config.arc_time / 4)
     held = max(4, round(config.arc_time / step))
     far = config.horizon + 0.5 * robot.limits.v_max / robot.limits.v_brake
-    steps = LOOKS * max(2, round(far / step / LOOKS))
+    steps = LOOKUPS * max(2, round(far / step / LOOKUPS))
     shape = robot.footprint
     return Rules(
         body=body_of(robot),
         limits=robot.limits,
         config=config,
-        schedule=schedule_of(step, held, steps, LOOKS),
+        schedule=schedule_of(step, held, steps, LOOKUPS),
         long_hold=step * max(round(LONG_HOLD / step), held),
         period=period,
         risk_radius=0.5 * (shape.inscribed + shape.circumscribed),

@@ -4,7 +4,7 @@ from dynastar.compiled import inner, njit
 from dynastar.dwa.admissible import ADMISSIBLE, certified_stop, refusal
 from dynastar.dwa.motion import command_towards, state_of
 
-PARTS = 8  # of the speeds asked for, from which the largest admissible share is looked for
+PARTS = 8  # of the speeds asked for, from which the largest admissible fraction is looked for
 HALVINGS = 3  # of the step between two parts
 
 
@@ -27,9 +27,9 @@ def nearest_admissible(around, rules, stops_from, twist, asked, steady):
 
 @inner
 def fastest(around, rules, stops_from, twist, asked, steady):
-    """The command towards the largest admissible share of the speeds ``asked`` for.
+    """The command towards the largest admissible fraction of the speeds ``asked`` for.
 
-    A robot that has to be ``steady`` and is slower than the least share starts with none below a part,
+    A robot that has to be ``steady`` and is slower than the least fraction starts with none below a part,
     so that the noise of its sensors does not start and stop it. Returns whether there is such a
     command, the command, and why the speeds asked for are refused, or ADMISSIBLE.
     """
@@ -39,11 +39,11 @@ def fastest(around, rules, stops_from, twist, asked, steady):
     (v, omega), (now_v, now_omega) = asked, twist
     best, step = 0.0, 1.0 / PARTS
     for part in range(PARTS - 1, 0, -1):
-        share = part * step
-        wanted = share * v, share * omega
+        fraction = part * step
+        wanted = fraction * v, fraction * omega
         command, code = checked(around, rules, stops_from, twist, wanted, steady)
         if code == ADMISSIBLE:
-            best = share
+            best = fraction
             break
     now, most = (now_v, v) if v != 0.0 else (now_omega, omega)
     starts = steady > 0.0 and abs(now) <= step * 0.5**HALVINGS * abs(most)

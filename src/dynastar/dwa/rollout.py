@@ -47,25 +47,25 @@ class Schedule(NamedTuple):
     """Times of a roll-out's rows: every step while a sample is held, then every second one.
 
     ``step`` (n,) is the number of each row's time in steps of ``period`` (s), ``duration`` (n,) the
-    seconds since the row before. ``held`` is the number of rows for which a sample is held, ``looks``
+    seconds since the row before. ``held`` is the number of rows for which a sample is held, ``lookups``
     (8,) are the rows at which the cost-to-go is looked up.
     """
 
     step: npt.NDArray[np.int64]
     duration: npt.NDArray[np.float64]
-    looks: npt.NDArray[np.int64]
+    lookups: npt.NDArray[np.int64]
     held: int
     period: float
 
 
-def schedule_of(period: float, held: int, steps: int, looks: int) -> Schedule:
+def schedule_of(period: float, held: int, steps: int, lookups: int) -> Schedule:
     """The schedule of roll-outs of ``steps`` of ``period`` (s), of which ``held`` are held."""
     at = [*range(1, held + 1), *range(held + STRIDE, steps + 1, STRIDE)]
     if at[-1] < steps:
         at.append(steps)
     step = np.array(at)
-    between = steps // looks
-    rows = np.searchsorted(step, between * np.arange(1, looks + 1))
+    between = steps // lookups
+    rows = np.searchsorted(step, between * np.arange(1, lookups + 1))
     return Schedule(step, period * np.diff(step, prepend=0), rows, held, period)
 
 

@@ -10,13 +10,13 @@ from typing import NamedTuple
 from dynastar.compiled import inner
 from dynastar.dwa.clearance import distance_at
 from dynastar.guidance.cost_to_go import turn_to_descent, value_at
-from dynastar.perception.prediction import TRACKING_ERROR, WEIGHTS, contact_probability
+from dynastar.perception.prediction import CONTINUES, TRACKING_ERROR, WEIGHTS, contact_probability
 
-LOOKS = 8  # times at which the cost-to-go is looked up along a roll-out
+LOOKUPS = 8  # times at which the cost-to-go is looked up along a roll-out
 OVERSHOOT = 0.25  # m that the robot may stop beyond the end of its path
 FAR_OFF = 1.0  # m from the path at which simi is 0
 LEAST_PROGRESS = 0.1  # m of progress that counts in full, at least
-REACH = 3.0  # standard deviations from which on a contact is not possible
+DEVIATIONS = 3.0  # standard deviations from which on a contact is not possible
 
 
 class Terms(NamedTuple):
@@ -70,7 +70,7 @@ def progress(cost_to_go, rules, start, rows):
     the cost-to-go goes on falling as it fell last.
     """
     gained, here, fell = 0.0, start.cost_to_go, 0.0
-    for i in rules.schedule.looks:
+    for i in rules.schedule.lookups:
         row = rows[i]
         if row.on_map:
             before, here = here, state_value(cost_to_go, rules.limits, row)
@@ -78,7 +78,7 @@ def progress(cost_to_go, rules, start, rows):
         else:
             here -= fell
         gained += start.cost_to_go - here
-    return max(gained / (LOOKS * start.most), -1.0)
+    return max(gained / (LOOKUPS * start.most), -1.0)
 
 
 @inner
@@ -100,8 +100,8 @@ def vel(rules, manoeuvre):
 def simi(distance_to_path, rules, rows):
     """Similarity to the global path: 1 - mean distance from it at eight times, up to 1 m."""
     off = 0.0
-    for i in rules.schedule.looks:
-        off += min(distance_at(distance_to_path, rows[i].x, rows[i].y), FAR_OFF) / LOOKS
+    for i in rules.schedule.lookups:
+        off += min(distance_at(distance_to_path, rows[i].x, rows[i].y), FAR_OFF) / LOOKUPS
     return 1.0 - min(1.0, off / FAR_OFF)
 
 
@@ -118,7 +118,7 @@ def risk(moving, rules, rows):
                 travel, deviation = moving.travel[h, k], moving.deviation[m, k]
                 dx = obstacle.x + travel * obstacle.vx - rows[i].x
                 dy = obstacle.y + travel * obstacle.vy - rows[i].y
-                square, reach = dx * dx + dy * dy, near + REACH * deviation
+                square, reach = dx * dx + dy * dy, near + DEVIATIONS * deviation
                 if square < reach * reach:
                     p = contact_probability(math.sqrt(square) - near, deviation)
                     highest = max(highest, moving.discount[k] * p)
@@ -134,7 +134,7 @@ def passes_clear(moving, rules, rows, duration):
     """
     for i in range(len(rows)):
         k = rules.schedule.step[i]
-        travel = moving.travel[0, k - 1]
+        travel = moving.travel[CONTINUES, k - 1]
         for obstacle in moving.obstacles:
             dx = obstacle.x + travel * obstacle.vx - rows[i].x
             dy = obstacle.y + travel * obstacle.vy - rows[i].y
@@ -165,11 +165,11 @@ def state_value(cost_to_go, limits, at):
 
 @inner
 def most_progress(rules, v, cost_to_go):
-    """The most that a ``cost_to_go`` (m) can fall by, on average over the looks, from speed ``v``."""
+    """The most that a ``cost_to_go`` (m) can fall by on average over the look-ups, from speed ``v``."""
     most = 0.0
-    between = rules.schedule.period * (rules.schedule.step[-1] // LOOKS)
-    for look in range(1, LOOKS + 1):
-        most += min(farthest(max(v, 0.0), rules.limits, look * between), cost_to_go) / LOOKS
+    between = rules.schedule.period * (rules.schedule.step[-1] // LOOKUPS)
+    for look in range(1, LOOKUPS + 1):
+        most += min(farthest(max(v, 0.0), rules.limits, look * between), cost_to_go) / LOOKUPS
     return max(most, LEAST_PROGRESS)
 
 

@@ -19,10 +19,10 @@ from dynastar.perception.prediction import Prediction
 Floats = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-FACTOR = 2  # cells of the local map to one of the cost-to-go
+COARSENING = 2  # cells of the local map to one of the cost-to-go
 KNOWN_BEYOND = 3.0  # m that the cost-to-go is known beyond the robot
 OFF_PATH_COST = 6.0  # extra cost of a metre 1 m or more beside a path that is kept to
-BESIDE = 1  # cells beside the path where the robot may be
+PATH_CELLS = 1  # cells beside the path where the robot may be
 ROUNDING = 1e-6  # m, for points on the border of two cells
 OPEN_WITHIN = 6  # cells to the nearest one where the robot fits, at most
 
@@ -70,7 +70,7 @@ class Guidance:
     def __init__(
         self, cells: int, resolution: float, margin: float, comfort: float, keep_to_path: bool
     ) -> None:
-        self.resolution, self._cells = resolution * FACTOR, cells // FACTOR  # along a side
+        self.resolution, self._cells = resolution * COARSENING, cells // COARSENING  # along a side
         self._margin, self._comfort, self._keep_to_path = margin, comfort, keep_to_path
         self._queue = queue_for(self._cells**2)
 
@@ -88,9 +88,9 @@ class Guidance:
         planner does not fit, which is closed here as well, except along the path.
         """
         a, x0, y0 = self.resolution, obstacles.x0, obstacles.y0
-        metre = travel_cost(obstacles.values, FACTOR, self._margin, self._comfort)
-        off_path = self._off_path(target, x0, y0, BESIDE)
-        metre[blocks(np.logical_and, closed, FACTOR) & off_path] = np.inf
+        metre = travel_cost(obstacles.values, COARSENING, self._margin, self._comfort)
+        off_path = self._off_path(target, x0, y0, PATH_CELLS)
+        metre[blocks(np.logical_and, closed, COARSENING) & off_path] = np.inf
         cost, to_path = Field(metre, x0, y0, a), obstacles
         if target.is_given or self._keep_to_path:
             off_path = self._off_path(target, x0, y0)

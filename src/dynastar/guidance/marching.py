@@ -70,7 +70,8 @@ def march(cost, resolution, seed, stop, beyond, queue):
     value = np.full(cost.shape, np.inf)
     costs, values = cost.reshape(-1), value.reshape(-1)
     row, column = min(max(seed.row, 1), rows - 2), min(max(seed.column, 1), columns - 2)
-    first, target, begin = row * columns + column, stop[0] * columns + stop[1], seed.value
+    stop_row, stop_column = stop
+    first, target, begin = row * columns + column, stop_row * columns + stop_column, seed.value
     heads, cells, behind = queue
     heads[:] = -1
     per_metre = 1.0 / (WIDTH * resolution)

@@ -12,7 +12,7 @@ from dynastar.perception.prediction import WEIGHTS, contact_probability
 
 NEAR_COST = 4.0  # extra cost of a metre right at the margin of an obstacle
 ENCOUNTER_COST = 15.0  # extra cost of a metre where a moving obstacle is met for certain
-REACH = 2.0  # standard deviations from which on a moving obstacle costs nothing
+DEVIATIONS = 2.0  # standard deviations from which on a moving obstacle costs nothing
 
 
 class Encounter(NamedTuple):
@@ -56,7 +56,7 @@ def add_encounters(cost, moving, encounter):
     a = cost.resolution
     for m, obstacle in enumerate(moving.obstacles):
         near = encounter.radius + obstacle.radius
-        reach = near + REACH * moving.deviation[m, steps - 1]
+        reach = near + DEVIATIONS * moving.deviation[m, steps - 1]
         for h in range(hypotheses):
             last = moving.travel[h, steps - 1]
             first_y, last_y = obstacle.y, obstacle.y + last * obstacle.vy
@@ -77,7 +77,7 @@ def add_encounters(cost, moving, encounter):
                     travel, deviation = moving.travel[h, k], moving.deviation[m, k]
                     dx = obstacle.x + travel * obstacle.vx - x
                     dy = obstacle.y + travel * obstacle.vy - y
-                    square, within = dx * dx + dy * dy, near + REACH * deviation
+                    square, within = dx * dx + dy * dy, near + DEVIATIONS * deviation
                     if square < within * within:
                         p = contact_probability(math.sqrt(square) - near, deviation)
                         p *= WEIGHTS[h] * moving.discount[k] * encounter.discount

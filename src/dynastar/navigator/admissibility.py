@@ -10,10 +10,11 @@ from dynastar.dwa.dwa import DynamicWindow
 from dynastar.dwa.motion import state_at
 from dynastar.dwa.scene import Surroundings
 from dynastar.geometry import Pose2D
-from dynastar.navigator.arrival import GENTLE
+from dynastar.navigator.arrival import GENTLE_BRAKING
 from dynastar.navigator.config import NavigatorConfig, margin_of
 from dynastar.navigator.sensing import View
 from dynastar.perception.planning_map import PlanningMap
+from dynastar.perception.prediction import Times
 from dynastar.robot import Robot
 
 
@@ -28,10 +29,10 @@ class Admissibility:
         self.window = DynamicWindow(robot, config.dwa, config.period, config.drive_error)
 
     @property
-    def times(self) -> tuple[float, float, int]:
-        """The times of roll-outs: when a command acts (s), the step (s), and the number of steps."""
+    def times(self) -> Times:
+        """The times of the prediction: those of roll-outs from when a command acts."""
         schedule = self.window.rules.schedule
-        return self.config.latency, schedule.period, int(schedule.step[-1])
+        return Times(self.config.latency, schedule.period, int(schedule.step[-1]))
 
     def margin_at(self, v: float) -> float:
         """The margin (m) at a speed (m/s): an error of the heading counts over the way of a stop."""
@@ -64,5 +65,5 @@ class Admissibility:
             return limits.v_max
         ahead = np.maximum(np.arange(len(line)) - 1.0, 0.0) * spacing
         limit = planning_map.speed_limit(np.vstack([[pose.x, pose.y], line]))
-        slowed = np.sqrt(limit[1:] ** 2 + 2.0 * GENTLE * limits.v_brake * ahead)
+        slowed = np.sqrt(limit[1:] ** 2 + 2.0 * GENTLE_BRAKING * limits.v_brake * ahead)
         return float(min(limits.v_max, limit[0], slowed.min(initial=math.inf)))

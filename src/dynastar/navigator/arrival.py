@@ -3,10 +3,11 @@
 import math
 
 from dynastar.geometry import Goal, Pose2D, Twist, wrap_angle
+from dynastar.navigator.braking import Acting
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.robot import Limits
 
-GENTLE = 0.7  # of the braking limits, used to turn to a heading or to slow down for a speed limit
+GENTLE_BRAKING = 0.7  # of the braking limits, to turn to a heading or slow down for a speed limit
 TURNING = 0.1  # rad/s from which on the robot still turns
 
 
@@ -17,7 +18,7 @@ def rest_place(pose: Pose2D, twist: Twist, limits: Limits) -> tuple[float, float
 
 
 def stays_near(
-    goal: Goal, now: Pose2D, acting: tuple[Pose2D, Twist], limits: Limits, config: NavigatorConfig
+    goal: Goal, now: Pose2D, acting: Acting, limits: Limits, config: NavigatorConfig
 ) -> bool:
     """Whether the robot is within the tolerance of a goal's position, and still when it has come to rest.
 
@@ -28,7 +29,7 @@ def stays_near(
 
 
 def has_arrived(
-    goal: Goal, now: Pose2D, acting: tuple[Pose2D, Twist], limits: Limits, config: NavigatorConfig
+    goal: Goal, now: Pose2D, acting: Acting, limits: Limits, config: NavigatorConfig
 ) -> bool:
     """Whether the robot is at its goal and stays there, with the goal's heading if it has one."""
     if not stays_near(goal, now, acting, limits, config):
@@ -36,4 +37,4 @@ def has_arrived(
     if goal.heading is None:
         return True
     off = abs(wrap_angle(goal.heading - now.theta))
-    return abs(acting[1].omega) <= TURNING and off <= config.heading_tolerance
+    return abs(acting.twist.omega) <= TURNING and off <= config.heading_tolerance

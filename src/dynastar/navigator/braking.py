@@ -1,6 +1,7 @@
 """The commands given, and the stop that is carried on when nothing better is admissible."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,13 +12,25 @@ from dynastar.navigator.drive_check import DriveCheck
 from dynastar.navigator.status import RobotState, is_finite
 from dynastar.robot import Limits, slew, stopping_time
 
-Acting = tuple[Pose2D, Twist]
-
 REST = Twist(0.0, 0.0)
 ROUNDING = 1e-9  # m/s and rad/s
 LATENCY_STEP = 0.1  # s between the latencies for which a stop is certified, at most
 V_TOLERANCE = 0.08  # of v_max that the measured speed may be off the commanded one
 OMEGA_TOLERANCE = 0.1  # of omega_max, the same for the turning rate
+
+
+class Acting(NamedTuple):
+    """Pose and twist at the time from which a command acts."""
+
+    pose: Pose2D
+    twist: Twist
+
+
+class Sent(NamedTuple):
+    """A command and the stamp (s) of the state it was given in."""
+
+    stamp: float
+    twist: Twist
 
 
 class StopProfile:
@@ -39,12 +52,14 @@ class StopProfile:
         is_last = self.elapsed + period >= self.duration
         left = 0.0 if is_last else 1.0 - (self.elapsed + 0.5 * period) / self.duration
         return Twist(
-            _lead(current.v, self.twist.v * left, self.limits.v_brake, period),
-            _lead(current.omega, self.twist.omega * left, self.limits.omega_brake, period),
+            _command_for_mean(current.v, self.twist.v * left, self.limits.v_brake, period),
+            _command_for_mean(
+                current.omega, self.twist.omega * left, self.limits.omega_brake, period
+            ),
         )
 
 
-def _lead(current: float, mean: float, brake: float, period: float) -> float:
+def _command_for_mean(current: float, mean: float, brake: float, period: float) -> float:
     """The value to command for ``mean`` to be the period's mean, reached at ``brake`` and held.
 
     A drop D takes D / brake seconds, so the mean is current - D + D^2 / (2 brake period).
@@ -73,7 +88,7 @@ class Commands:
         self._drive_error = drive_error
         self._declared = period
         self.check = DriveCheck(limits, period, latency)
-        self._sent: list[tuple[float, Twist]] = []
+        self._sent: list[Sent] = []
         self._last, self._noted_at = REST, math.nan  # and the stamp (s) of its state
         self._stop = StopProfile(REST, limits)
 
@@ -84,7 +99,7 @@ class Commands:
         """
         latency = self.latency if latency is None else latency
         if latency <= 0.0 or not self._sent:
-            return state.pose, state.twist
+            return Acting(state.pose, state.twist)
         ends = [stamp + latency for stamp, _ in self._sent[1:]] + [state.stamp + latency]
         commands, durations = [], []
         for (stamp, twist), end in zip(self._sent, ends, strict=True):
@@ -92,20 +107,22 @@ class Commands:
             if span > 1e-9:
                 commands.append(twist)
                 durations.append(span)
-        return self._driven(state, commands, durations) if durations else (state.pose, state.twist)
+        if not durations:
+            return Acting(state.pose, state.twist)
+        return self._driven(state, commands, durations)
 
     def _driven(self, state: RobotState, commands: list[Twist], durations: list[float]) -> Acting:
         """Pose and twist after each of the commands has acted for its duration (s)."""
         now = state_at(*state.pose, *state.twist)
         after, turned = coast(now, np.array(commands), np.array(durations), self.limits)
         pose = Pose2D(after.pose.x, after.pose.y, state.pose.theta + turned)
-        return pose, Twist(after.v, after.omega)
+        return Acting(pose, Twist(after.v, after.omega))
 
     def carried_on(self, measured: Twist) -> Twist:
         """The twist from which the next command goes on: the last command, near the measured twist.
 
         A drive or odometry that is a few per cent off would else eat what a command may change in a
-        period. What cannot be told from such an error is bounded: a share of the highest speed, and
+        period. What cannot be told from such an error is bounded: a fraction of the highest speed, and
         what the robot brakes by in a period.
         """
         limits, period = self.limits, self.period
@@ -155,7 +172,7 @@ class Commands:
         """Record a command that has a certified stop; None continues the last one's stop."""
         if command is None:
             return self.brake(state)
-        limits, now = self.limits, self._as_told(self.when_one_acts(state)[1], self._last)
+        limits, now = self.limits, self._as_told(self.when_one_acts(state).twist, self._last)
         v = slew(now.v, command.v, limits.v_accel, limits.v_brake, self.period)
         omega = slew(now.omega, command.omega, limits.omega_accel, limits.omega_brake, self.period)
         self._stop = StopProfile(Twist(v, omega), limits)  # a drive may not follow at once
@@ -179,7 +196,7 @@ class Commands:
         """
         twist = self._last
         if is_finite(state):
-            v, omega = self._as_told(self.when_one_acts(state)[1], self._last)
+            v, omega = self._as_told(self.when_one_acts(state).twist, self._last)
             twist = Twist(_lesser(v, self._last.v), _lesser(omega, self._last.omega))
         passed = state.stamp - self._noted_at
         passed = passed if 0.0 < passed < math.inf else self.period
@@ -194,8 +211,8 @@ class Commands:
         self._noted_at = now
         if is_finite(state):
             self.check.note(state, command)
-        if self._sent and self._sent[-1][0] == now:
+        if self._sent and self._sent[-1].stamp == now:
             self._sent.pop()
-        self._sent.append((now, command))
-        while len(self._sent) > 1 and self._sent[1][0] + self.latency <= now:
+        self._sent.append(Sent(now, command))
+        while len(self._sent) > 1 and self._sent[1].stamp + self.latency <= now:
             self._sent.pop(0)

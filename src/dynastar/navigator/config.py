@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 from dynastar.config import Field, checked, choose, self_checking
 from dynastar.dwa.config import DwaConfig, Weights
 from dynastar.grid import OccupancyGrid
-from dynastar.navigator.progress import STEP
+from dynastar.navigator.progress import ADVANCE
 from dynastar.perception import LocalMapConfig, PredictionConfig, TrackerConfig
 from dynastar.planning import PlannerConfig
 from dynastar.robot import Robot
@@ -89,12 +89,12 @@ def fitted(config: NavigatorConfig, robot: Robot) -> NavigatorConfig:
     rounding close gaps by a cell or two, which a small robot needs. A slow robot is not stuck in the
     time in which it can turn round and drive as far as counts for progress.
     """
-    share = min(1.0, max(robot.footprint.half_width / CELLS / config.resolution, 0.5))
+    fraction = min(1.0, max(robot.footprint.half_width / CELLS / config.resolution, 0.5))
     local = config.local_map
-    size = max(SMALLEST_LOCAL_MAP, share * local.size)
-    least_time = math.pi / robot.limits.omega_max + STEP / robot.limits.v_max
+    size = max(SMALLEST_LOCAL_MAP, fraction * local.size)
+    least_time = math.pi / robot.limits.omega_max + ADVANCE / robot.limits.v_max
     return config._replace(
-        resolution=share * config.resolution,
+        resolution=fraction * config.resolution,
         local_map=local._replace(size=size),
         stuck_time=max(config.stuck_time, least_time),
     )

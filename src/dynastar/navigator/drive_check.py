@@ -1,4 +1,4 @@
-"""What is odd about a drive, its odometry and the loop of commands, in words for the status."""
+"""Faults of a drive, its odometry and the loop of commands, as messages for the status."""
 
 import math
 
@@ -26,7 +26,7 @@ class DriveCheck:
         self._asked = self._asked_turn = 0.0  # m and rad since then
 
     def note(self, state: RobotState, command: Twist) -> None:
-        """Take in a command given in a state."""
+        """Record a command given in a state."""
         self._acting.note(state, command)
         moved = math.dist(state.pose[:2], self._at[:2]) > MOVED
         if moved or abs(wrap_angle(state.pose.theta - self._at.theta)) > TURNED:

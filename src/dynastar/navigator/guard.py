@@ -12,8 +12,8 @@ from dynastar.geometry import Pose2D, Twist
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator.admissibility import Admissibility
 from dynastar.navigator.aligned import turned_pose
-from dynastar.navigator.arrival import GENTLE
-from dynastar.navigator.braking import REST, Commands
+from dynastar.navigator.arrival import GENTLE_BRAKING
+from dynastar.navigator.braking import REST, Acting, Commands
 from dynastar.navigator.config import NavigatorConfig, fitted
 from dynastar.navigator.inputs import as_robot
 from dynastar.navigator.sensing import Sensing
@@ -50,7 +50,7 @@ class Guarded:
 
 
 class Guard:
-    """Lets only commands pass after which the robot can still stop, whoever gives them.
+    """Lets only commands pass after which the robot can still stop, from whatever source.
 
     Give it every state and scan with the controller's command, and drive as it says. It needs no goal
     and no map; with a ``grid``, its keep-out zones and speed limits count. Sensing, the declared
@@ -86,7 +86,7 @@ class Guard:
     def set_map(self, grid: OccupancyGrid | None) -> None:
         """Use another map, or none. What was seen is kept, unless the map has another yaw.
 
-        Raises InputError for what is no map.
+        Raises InputError if the map is not valid.
         """
         if grid is not None:
             as_robot(grid, self.robot, self.config)
@@ -138,7 +138,7 @@ class Guard:
             self.forget_times()
         acting = self._commands.when_one_acts(state)
         if is_finite(state):
-            self._acts_at = turned_pose(acting[0], self._map.grid.frame.yaw)
+            self._acts_at = turned_pose(acting.pose, self._map.grid.frame.yaw)
         self._commands.period = self.sensing.poses.period
         fault = fault or wrong
         if fault is not None:
@@ -155,7 +155,7 @@ class Guard:
     def _nearest(
         self,
         state: RobotState,
-        acting: tuple[Pose2D, Twist],
+        acting: Acting,
         movers: Sequence[MovingObstacle] | None,
         given: Twist,
     ) -> tuple[Twist | None, str]:
@@ -186,7 +186,7 @@ class Guard:
         """The command given, on the same arc within the limits of the robot and of the map's zones."""
         limits, spacing = self.robot.limits, self._map.grid.resolution
         v = max(given.v, 0.0) if limits.v_min == 0.0 else given.v
-        way = limits.v_max**2 / (2.0 * GENTLE * limits.v_brake)
+        way = limits.v_max**2 / (2.0 * GENTLE_BRAKING * limits.v_brake)
         lengths = spacing * np.arange(1.0, math.ceil(way / spacing) + 2.0)
         line = poses_along(pose, Twist(v, given.omega), lengths / max(abs(v), SAME))
         cap = self._check.speed_cap(pose, line[:, :2], spacing, self._map)
@@ -201,7 +201,7 @@ class Guard:
 
 
 def _as_twist(command: Twist | None) -> tuple[Twist, str | None]:
-    """The command with floats for numbers, NaN if it is none, and what is wrong with it or None."""
+    """The command as floats, NaN if it is not valid, and what is wrong with it or None."""
     nothing = Twist(math.nan, math.nan)
     if command is None:
         return nothing, "no command"

@@ -10,7 +10,7 @@ from dynastar.dwa.scene import Scene
 from dynastar.dwa.turning import KEPT_WITHIN, has_room_to_turn, place_to_turn
 from dynastar.geometry import Goal, Pose2D, Twist, wrap_angle
 from dynastar.guidance import PathTarget
-from dynastar.navigator.arrival import GENTLE
+from dynastar.navigator.arrival import GENTLE_BRAKING
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.mission import Mission
 from dynastar.navigator.progress import Progress
@@ -99,7 +99,7 @@ def turn_by(angle: float, short_by: float, twist: Twist, limits: Limits, period:
     declared, or a drive that turns too fast, does not make the robot swing. A drive that cannot turn so
     slowly stops where that ends within ``short_by`` (rad), or nearer than after one more period.
     """
-    rate = math.sqrt(2.0 * GENTLE * limits.omega_brake * abs(angle))
+    rate = math.sqrt(2.0 * GENTLE_BRAKING * limits.omega_brake * abs(angle))
     rate = math.copysign(min(limits.omega_max, rate, abs(angle) * STEADY / period), angle)
     omega = slew(twist.omega, rate, limits.omega_accel, limits.omega_brake, period)
     if abs(omega) < limits.omega_least:

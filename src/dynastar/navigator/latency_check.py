@@ -2,6 +2,7 @@
 
 import math
 from collections import deque
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,10 +12,18 @@ from dynastar.robot import Limits
 
 KEPT_FOR = 6.0  # s of commands and speeds that are compared
 EVERY = 1.0  # s between two estimates
-STEP, LONGEST = 0.02, 1.0  # s, of the latencies that are tried
+LATENCY_STEP, LONGEST_LATENCY = 0.02, 1.0  # s, of the latencies that are tried
 LONGER = 0.05  # s by which a latency is longer than declared, at least, to be told
 BETTER = 0.5  # of the error with the declared latency, below which another latency is the true one
 CLEAR = 0.005  # of the highest speeds: the error that the declared latency leaves, at least
+
+
+class Entry(NamedTuple):
+    """The twist that was measured at a stamp (s), and the command given then."""
+
+    stamp: float
+    measured: Twist
+    commanded: Twist
 
 
 class LatencyCheck:
@@ -26,29 +35,28 @@ class LatencyCheck:
 
     def __init__(self, limits: Limits, declared: float) -> None:
         self._highest, self._declared = np.array((limits.v_max, limits.omega_max)), declared
-        self._log: deque[tuple[float, Twist, Twist]] = deque()  # stamp, twist measured, commanded
+        self._log: deque[Entry] = deque()
         self._next = -math.inf
         self.longer: float | None = None  # the latency (s), if it is clearly longer than declared
 
     def note(self, state: RobotState, command: Twist) -> None:
-        """Take in a command given in a state."""
+        """Record a command given in a state."""
         log, now = self._log, state.stamp
-        if log and now <= log[-1][0]:
+        if log and now <= log[-1].stamp:
             log.clear()
-        log.append((now, state.twist, command))
-        while now - log[0][0] > KEPT_FOR:
+        log.append(Entry(now, state.twist, command))
+        while now - log[0].stamp > KEPT_FOR:
             log.popleft()
-        if now >= self._next and now - log[0][0] > 0.5 * KEPT_FOR:
+        if now >= self._next and now - log[0].stamp > 0.5 * KEPT_FOR:
             self._next, self.longer = now + EVERY, self._estimate()
 
     def _estimate(self) -> float | None:
         """The latency that explains the speeds best, if it does far better than the declared one."""
-        stamps = np.array([stamp for stamp, _, _ in self._log])
-        measured, commanded = (
-            np.array([entry[kind] for entry in self._log]) / self._highest for kind in (1, 2)
-        )
-        tried = np.arange(0.0, LONGEST, STEP)
-        judged = stamps - stamps[0] > LONGEST
+        stamps = np.array([entry.stamp for entry in self._log])
+        measured = np.array([entry.measured for entry in self._log]) / self._highest
+        commanded = np.array([entry.commanded for entry in self._log]) / self._highest
+        tried = np.arange(0.0, LONGEST_LATENCY, LATENCY_STEP)
+        judged = stamps - stamps[0] > LONGEST_LATENCY
         at = stamps[judged] - tried[:, None]
         error = np.zeros(len(tried))
         for speed, command in zip(measured[judged].T, commanded[:-1].T, strict=True):

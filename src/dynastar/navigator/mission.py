@@ -77,7 +77,8 @@ class Mission:
     @property
     def is_blocked(self) -> bool:
         """Whether the mission is over without its goal, also while data are lost."""
-        return "blocked" in (self.state, self._before and self._before[0])
+        before, _ = self._before or (self.state, self.reason)
+        return "blocked" in (self.state, before)
 
     def lose(self, fault: str) -> None:
         """Enter "sensor_lost" because of a ``fault``, until ``regain``."""

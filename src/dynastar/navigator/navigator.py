@@ -7,11 +7,11 @@ import numpy.typing as npt
 from dynastar.config import counted, shown, summary
 from dynastar.dwa.config import DwaConfig
 from dynastar.dwa.dwa import Choice
-from dynastar.geometry import Goal, Pose2D, Twist, as_goals
+from dynastar.geometry import Goal, Twist, as_goals
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator.aligned import turned_disc, turned_goal
 from dynastar.navigator.arrival import has_arrived, stays_near
-from dynastar.navigator.braking import Commands
+from dynastar.navigator.braking import Acting, Commands
 from dynastar.navigator.config import NavigatorConfig, fitted, margin_of, refined
 from dynastar.navigator.driving import Driving
 from dynastar.navigator.inputs import as_given_path, as_robot
@@ -166,7 +166,7 @@ class Navigator:
     def set_goal(self, goal: Sequence[float | None] | Sequence[Sequence[float | None]]) -> None:
         """Drive to one goal, or several in order: (x, y) metres and a heading in radians or None.
 
-        Tuples do as well as Goals. Raises InputError for what is no goal.
+        Tuples do as well as Goals. Raises InputError for a goal that is not valid.
         """
         goals = as_goals(goal)
         self._set_out(goals, "new goal" if goals else "no goal")
@@ -241,7 +241,7 @@ class Navigator:
         command = self._decide(state, acting, movers)
         return self._commands.send(state, self.sensing.on_trial(state, command))
 
-    def _has_arrived(self, state: RobotState, acting: tuple[Pose2D, Twist]) -> bool:
+    def _has_arrived(self, state: RobotState, acting: Acting) -> bool:
         return self.route.ends_within(self.config.goal_tolerance) and has_arrived(
             self._goal, state.pose, acting, self.robot.limits, self.config
         )
@@ -250,9 +250,9 @@ class Navigator:
         self, state: RobotState, changed: bool, movers: Sequence[MovingObstacle] | None
     ) -> None:
         """Keep, replace or drop the path, and tell the mission what that means."""
-        guide, someone = self.driving.guide, self.sensing.is_moving_at(self._goal, movers)
+        guide, is_taken = self.driving.guide, self.sensing.is_moving_at(self._goal, movers)
         reachable = guide is None or guide.reachable
-        event = self.route.update(state, self.mission.goals[0], changed, reachable, someone)
+        event = self.route.update(state, self.mission.goals[0], changed, reachable, is_taken)
         if event.is_new:
             self.mission.error = None
             self.progress.measure_anew()
@@ -262,7 +262,7 @@ class Navigator:
     def _decide(
         self,
         state: RobotState,
-        acting: tuple[Pose2D, Twist],
+        acting: Acting,
         movers: Sequence[MovingObstacle] | None,
     ) -> Twist | None:
         """The command, by the dynamic window or to turn to the goal's heading; None to stop."""

@@ -45,7 +45,8 @@ class Planners:
     ) -> None:
         self.planning_map, self.tolerance = planning_map, config.goal_tolerance
         # The robot rests near the end of its path, not on it: two cells are left for that.
-        self._roomy_tolerance = max(0.0, self.tolerance - 2.0 * planning_map.lattice[0])
+        cell, _ = planning_map.lattice
+        self._roomy_tolerance = max(0.0, self.tolerance - 2.0 * cell)
         roomy, tight = radii
         self.by_width = [
             GridPlanner(
@@ -58,7 +59,7 @@ class Planners:
         self.exact = "auto" if config.planner.exact and planner is None else ""
 
     def mark(self, patch: Patch | None) -> bool:
-        """Take in what changed on the planning map. Returns True if anything did."""
+        """Update the planners where the planning map changed. Returns True if anything did."""
         if patch is not None:
             for planner in self.by_width:
                 planner.mark(*patch)

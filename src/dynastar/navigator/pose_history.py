@@ -48,7 +48,8 @@ class PoseHistory:
     @property
     def clock_is_another(self) -> bool:
         """Whether time went back, and has risen for a while since."""
-        return self._back is not None and self._back[1] - self._back[0] >= OTHER_CLOCK
+        first, last = self._back or (0.0, 0.0)
+        return last - first >= OTHER_CLOCK
 
     def add(self, state: RobotState) -> bool:
         """Keep a state; True if the pose jumped, which drops those before (the map was corrected)."""

@@ -3,8 +3,10 @@
 import math
 from collections.abc import Callable
 
-STEP = 0.1  # m by which the robot has to move, and the cost-to-go has to be lower there, to count
-LEAP = 1.0  # m by which it has to be lower for the rounds of recovery to start over
+ADVANCE = (
+    0.1  # m by which the robot has to move, and the cost-to-go has to be lower there, to count
+)
+RESTART = 1.0  # m by which it has to be lower for the rounds of recovery to start over
 
 Point = tuple[float, float]
 CostToGoAt = Callable[[float, float], float]
@@ -63,14 +65,14 @@ class Progress:
         value = cost_to_go(*here)
 
         def is_nearer_than(place: Point, by: float) -> bool:
-            return math.dist(here, place) > STEP and cost_to_go(*place) - value > by
+            return math.dist(here, place) > ADVANCE and cost_to_go(*place) - value > by
 
-        if self._stuck_at is not None and is_nearer_than(self._stuck_at, LEAP):
+        if self._stuck_at is not None and is_nearer_than(self._stuck_at, RESTART):
             self._stuck_at, self.rounds = None, 0
         if self._is_new_path and self._anchor is not None:
             self._anchor = here if cost_to_go(*self._anchor) < value else self._anchor
         self._is_new_path = False
-        if self._anchor is None or is_nearer_than(self._anchor, STEP):
+        if self._anchor is None or is_nearer_than(self._anchor, ADVANCE):
             if self._anchor is not None or self._since == -math.inf:
                 self._since = now
             self._anchor = here

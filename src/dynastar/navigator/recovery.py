@@ -23,7 +23,7 @@ class Recovery:
         """End the mission if all attempts were made; else begin to stop if the robot is stuck."""
         route, progress, attempts = self.route, self.progress, self.config.attempts
         here, has_path = (state.pose.x, state.pose.y), route.path is not None
-        if route.waits_for_someone(here):
+        if route.waits_at_taken_goal(here):
             self.mission.say("waiting", "a moving obstacle is at the goal")
             progress.restart(state.stamp)
             return

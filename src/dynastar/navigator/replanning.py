@@ -55,7 +55,7 @@ class Route:
         self.plan_id, self.reason, self.replans = 0, "", 0
         self._stand = Path(np.zeros((1, 2)))  # where the robot waits while there is no path
         self._is_short = False  # the path does not lead to the goal, only nearer or out of a zone
-        self._someone = False  # a moving obstacle is at the goal
+        self._goal_is_taken = False  # a moving obstacle is at the goal
         self._planned_at = -math.inf
         self._changed = False  # the planning map, since the path was last looked at
         self.start_over()
@@ -102,14 +102,19 @@ class Route:
         return PathTarget(self.path, self.s, math.inf if self.given is None else ahead)
 
     def update(
-        self, state: RobotState, goal: Goal, changed: bool, reachable: bool, someone: bool = False
+        self,
+        state: RobotState,
+        goal: Goal,
+        changed: bool,
+        reachable: bool,
+        goal_is_taken: bool = False,
     ) -> RouteEvent:
         """Advance along, replan or drop the path for this tick.
 
         ``changed`` tells whether the planning map did, ``reachable`` whether a way leads along the path
-        out of the local map, ``someone`` whether a moving obstacle is at the goal.
+        out of the local map, ``goal_is_taken`` whether a moving obstacle is at the goal.
         """
-        self._someone = someone
+        self._goal_is_taken = goal_is_taken
         self._changed = self._changed or changed
         since = state.stamp - self._planned_at
         if self.path is None:
@@ -147,11 +152,11 @@ class Route:
             return ""
         return str(self.error) if self.is_at_obstructed_goal else NO_PATH
 
-    def waits_for_someone(self, here: tuple[float, float]) -> bool:
+    def waits_at_taken_goal(self, here: tuple[float, float]) -> bool:
         """Whether a moving obstacle is at the goal, and the robot near the end of the path to it."""
         if self.path is None:
-            return self._someone and self.is_at_obstructed_goal
-        return self._someone and math.dist(here, self.path.points[-1]) < WAIT_WITHIN
+            return self._goal_is_taken and self.is_at_obstructed_goal
+        return self._goal_is_taken and math.dist(here, self.path.points[-1]) < WAIT_WITHIN
 
     def _is_blocked(self) -> bool:
         """Whether the rest of the path is blocked on the planning map."""
@@ -182,7 +187,8 @@ class Route:
             if is_review:
                 return KEPT
             return self._without_path(state, error)
-        if reason == GOAL_IS_FREE and self._part_to_drive(plan, goal)[1]:
+        _, is_short = self._part_to_drive(plan, goal)
+        if reason == GOAL_IS_FREE and is_short:
             return KEPT
         if self.path is not None and plan.path.length > below * (self.path.length - self.s):
             return KEPT

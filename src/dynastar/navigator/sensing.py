@@ -20,7 +20,7 @@ from dynastar.perception import LocalMap, MovingObstacle, PlanningMap, Track, Tr
 from dynastar.perception.hidden import Hidden, HiddenSpace
 from dynastar.perception.local_map import SEEN_OCCUPIED
 from dynastar.perception.placed_scan import placed
-from dynastar.perception.prediction import Prediction, predict
+from dynastar.perception.prediction import Prediction, Times, predict
 from dynastar.robot import Robot
 from dynastar.scan import LaserScan, as_scans
 
@@ -94,7 +94,7 @@ class Sensing:
         movers: Sequence[MovingObstacle] | None,
         trusts_map: bool = False,
     ) -> tuple[RobotState, list[MovingObstacle] | None, str | None]:
-        """Take in what a caller gives. Returns state and movers in the own frame, and a fault or None.
+        """Check what a caller gives. Returns state and movers in the own frame, and a fault or None.
 
         ``trusts_map`` as in ``update``.
         """
@@ -115,13 +115,15 @@ class Sensing:
             return command
         v, omega = abs(command.v), abs(command.omega)
         braked = limits.v_brake * self.poses.period, limits.omega_brake * self.poses.period
-        share = max(
-            _share(limits.v_least, v),
-            _share(limits.omega_least, omega),
-            _share(abs(state.twist.v) - braked[0], v),  # slower than it can be after a period
-            _share(abs(state.twist.omega) - braked[1], omega),
+        fraction = max(
+            _fraction(limits.v_least, v),
+            _fraction(limits.omega_least, omega),
+            _fraction(abs(state.twist.v) - braked[0], v),  # slower than it can be after a period
+            _fraction(abs(state.twist.omega) - braked[1], omega),
         )
-        return slowed(command, Twist(max(TRIAL.v, share * v), max(TRIAL.omega, share * omega)))
+        return slowed(
+            command, Twist(max(TRIAL.v, fraction * v), max(TRIAL.omega, fraction * omega))
+        )
 
     def update(
         self, state: RobotState, scans: Sequence[LaserScan], trusts_map: bool = False
@@ -164,7 +166,7 @@ class Sensing:
         self,
         now: float,
         moving: Sequence[MovingObstacle] | None,
-        times: tuple[float, float, int],
+        times: Times,
     ) -> View:
         """What is known at ``now``; ``moving`` replaces the tracks, ``times`` as in ``predict``."""
         local = self.local_map
@@ -230,6 +232,6 @@ class Sensing:
         self.local_map.see(view, moving, self.feed.number_of(scan))
 
 
-def _share(least: float, speed: float) -> float:
+def _fraction(least: float, speed: float) -> float:
     """The fraction of a speed that a drive follows at the least, above rounding; 0 of rest."""
     return (1.0 + 1e-9) * least / speed if speed > 0.0 else 0.0

@@ -18,8 +18,8 @@ from dynastar.perception.local_map import picked
 Mask = npt.NDArray[np.bool_]
 
 HIDDEN_RADIUS = 0.25  # m, of a body that unseen space may hold
-SLACK = 0.1  # m by which a person may come nearer than promised before the robot is at rest
-FACTOR = 2  # cells of the local map to one of this field
+APPROACH = 0.1  # m by which a person may come nearer than promised before the robot is at rest
+COARSENING = 2  # cells of the local map to one of this field
 
 
 class Hidden(NamedTuple):
@@ -46,9 +46,9 @@ class HiddenSpace:
     def __init__(
         self, cells: int, resolution: float, speed: float, corner: tuple[float, float] = (0.0, 0.0)
     ) -> None:
-        n = cells // FACTOR
+        n = cells // COARSENING
         self.speed, self._lattice_corner = speed, corner
-        self._resolution = resolution * FACTOR
+        self._resolution = resolution * COARSENING
         self._cleared_until = np.full((n, n), -np.inf)
         self._corner = (0, 0)
 
@@ -65,9 +65,9 @@ class HiddenSpace:
         """
         self._move_to(corner)
         a, speed = self._resolution, max(self.speed, 1e-6)
-        seen = blocks(np.logical_and, seen_free, FACTOR)
+        seen = blocks(np.logical_and, seen_free, COARSENING)
         to_cleared = _distances(seen | (self._cleared_until > now))
-        to_solid = _distances(blocks(np.logical_or, occupied, FACTOR))
+        to_solid = _distances(blocks(np.logical_or, occupied, COARSENING))
         fits = np.minimum(to_cleared, to_solid) >= HIDDEN_RADIUS / a
         bodies = fits & (to_cleared <= to_solid + 1.0)  # not behind what is cleared
         far = _distances(bodies) * np.float32(a) if bodies.any() else np.full(bodies.shape, FAR)
@@ -75,13 +75,13 @@ class HiddenSpace:
         reach = np.maximum(distance[seen].astype(np.float64) - HIDDEN_RADIUS, 0.0)
         self._cleared_until[seen] = now + reach / speed
         (x0, y0), (row, column) = self._lattice_corner, corner
-        field = Field(distance, x0 + column * a / FACTOR, y0 + row * a / FACTOR, a)
+        field = Field(distance, x0 + column * a / COARSENING, y0 + row * a / COARSENING, a)
         return Hidden(field, self.speed)
 
     def _move_to(self, corner: tuple[int, int]) -> None:
         """Move the window to a corner in cells of the local map; what comes in is not cleared."""
         n = len(self._cleared_until)
-        up, right = ((a - b) // FACTOR for a, b in zip(corner, self._corner, strict=True))
+        up, right = ((a - b) // COARSENING for a, b in zip(corner, self._corner, strict=True))
         if (up, right) != (0, 0):
             rows, columns = np.arange(n) + up, np.arange(n) + right
             self._cleared_until = picked(self._cleared_until, rows, columns, -np.inf)

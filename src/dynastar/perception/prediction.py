@@ -19,6 +19,7 @@ from dynastar.perception.tracking_kernels import REST_SPEED
 
 Floats = npt.NDArray[np.float64]
 
+CONTINUES = 0  # the first hypothesis
 WEIGHTS = np.array([0.9, 0.08, 0.02])  # to continue, stop, turn back: see docs/prediction.md
 STOPPING_RATE = 2.0  # 1/s at which the speed of a moving obstacle that stops decays
 OBSTACLE = np.dtype([(name, np.float64) for name in MovingObstacle._fields])
@@ -41,6 +42,17 @@ class PredictionConfig(NamedTuple):
     memory: Annotated[float, Field("time constant that discounts risk", "s", 0.1, 60.0)] = 2.0
 
 
+class Times(NamedTuple):
+    """The times of a prediction: step k of ``steps`` is ``begin`` + (k + 1) ``step`` seconds from now.
+
+    ``begin`` is when a command acts.
+    """
+
+    begin: float
+    step: float
+    steps: int
+
+
 class Prediction(NamedTuple):
     """Predicted moving obstacles at equal steps of time, for kernels.
 
@@ -58,13 +70,8 @@ class Prediction(NamedTuple):
     acceleration: float
 
 
-def predict(
-    moving: Sequence[MovingObstacle], config: PredictionConfig, times: tuple[float, float, int]
-) -> Prediction:
-    """Predict moving obstacles at ``times`` (begin, step, steps).
-
-    Step k is ``begin`` + (k + 1) ``step`` seconds from now; ``begin`` is when a command acts.
-    """
+def predict(moving: Sequence[MovingObstacle], config: PredictionConfig, times: Times) -> Prediction:
+    """Predict moving obstacles at ``times``."""
     begin, step, steps = times
     after = step * np.arange(1.0, steps + 1.0)
     ahead = begin + after

@@ -15,7 +15,9 @@ from dynastar.planning.smoothing import Points, smooth
 
 Mask = npt.NDArray[np.bool_]
 
-BESIDE = 1.5  # times the clearance that a start lacks: an exit so near is that of a space beside it
+NEIGHBOURING = (
+    1.5  # times the clearance that a start lacks: an exit so near is that of a space beside it
+)
 
 
 class WayOut(NamedTuple):
@@ -77,7 +79,7 @@ def way_out(
     nearest = lengths[parts > 0].min(initial=np.inf)
     if zone is None and nearest == np.inf:
         raise StartOccupied(f"no cell outside the inflation is reached from cell {start}")
-    if zone is None and nearest <= BESIDE * (grid.radius - clearance) + 2.0:
+    if zone is None and nearest <= NEIGHBOURING * (grid.radius - clearance) + 2.0:
         lengths[lengths > nearest + 1.0 + 1e-9] = np.inf  # a tie of rounded lengths is kept
     lengths[~leads_on] = np.inf
     if np.isinf(lengths).all():

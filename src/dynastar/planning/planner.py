@@ -113,7 +113,7 @@ class GridPlanner:
         From a start inside the inflation the path first takes the shortest way out that leads on to
         the goal (see ``way_out``). Where the disc does not fit at the goal, or no way leads there,
         the path ends at the nearest place that can be reached within ``tolerance`` metres. Raises
-        OutOfMap, StartOccupied, GoalOccupied or NoPath, and ConfigError for a tolerance that is none.
+        OutOfMap, StartOccupied, GoalOccupied or NoPath, and ConfigError for a tolerance that is not valid.
         """
         start_xy, goal_xy = as_point(start_xy, "the start"), as_point(goal_xy, "the goal")
         planner = planner or self.config.planner

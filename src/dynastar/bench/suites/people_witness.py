@@ -12,7 +12,7 @@ behind a corner can be met by a robot that stops once it sees them. What the rul
 a robot can know where to wait: that is the navigator's task.
 
 The search is a weighted best-first search over positions 0.25 m apart, eight headings and time. What
-it does not find within its limits may still exist; such a world is left out all the same.
+it does not find within its limits may still exist; such a world is left out nevertheless.
 """
 
 import math

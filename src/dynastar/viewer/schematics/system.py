@@ -89,9 +89,9 @@ BLOCKS = {
 # fmt: on
 STAGES = (
     ("window", "Eqs. 5 and 6:\nspeeds in reach", "dwa.window"),
-    ("certified stop", "Eq. 7: the footprint\ncan always brake", "dwa.admissible"),
     ("rollouts", "Eq. 4: an arc, then\na tail", "dwa.motion\ndwa.rollout"),
     ("evaluation", "Eq. 9: heading,\ndist, vel, and risk", "dwa.terms\ndwa.search"),
+    ("certified stop", "Eq. 7: of the best\nthat can still brake", "dwa.admissible"),
 )
 
 
