@@ -61,7 +61,7 @@ def quality_table(found: Found) -> str:
         known = [[row[key] for row in pair] for pair in pairs]
         known = [pair for pair in known if None not in pair]
         if not known:
-            lines.append((f"`{key}`, {unit}", "", "", ""))
+            lines.append((f"`{key}`, {unit}", "", "", "", ""))
             continue
         ours, other = (fmean(values) for values in zip(*known, strict=True))
         met = f"{'met' if ours <= SMOOTHEST * other else 'missed'}" if key in SMOOTH else ""

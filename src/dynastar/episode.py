@@ -54,7 +54,7 @@ class Trace:
 
     ``candidates`` (k, 3) are v (m/s), omega (rad/s) and score of the window's samples, ``refused`` (k,)
     codes of ``dwa.REFUSALS`` (0 not refused), ``candidate_rows`` (n,) how many belong to each tick.
-    ``terms`` (n, 5) are those of Eq. 9 of the chosen sample and ``chosen`` (n, 3) its v, omega and the
+    ``terms`` (n, t) are those of Eq. 9 of the chosen sample and ``chosen`` (n, 3) its v, omega and the
     seconds it is held, NaN where none was chosen. ``tracks`` (j, 5) are x, y, vx, vy and radius of tracked
     obstacles, ``track_rows`` (n,) how many each tick has. ``reasons`` (n,) says why in words. ``seen``
     (m, 4) are tick, row, column and whether the planning map took that cell for blocked from then on, by

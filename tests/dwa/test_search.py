@@ -152,7 +152,7 @@ def test_an_obstacle_head_on_is_passed_with_less_risk_than_straight_on(lateral):
     scene = scene_of(empty(), moving=[obstacle])
     assert choice.manoeuvre is not None
     assert risk_of(Twist(*choice.manoeuvre[:2]), scene, pose) < 0.7 * risk_of(twist, scene, pose)
-    no_risk = DwaConfig(Weights(risk=0.0))
+    no_risk = DwaConfig(Weights(risk=0.0, nearness=0.0))
     careless = choose(empty(), pose, twist, moving=[obstacle], config=no_risk)
     assert careless.manoeuvre.v > 0.6
     assert abs(careless.manoeuvre.omega) < 0.2
@@ -290,7 +290,7 @@ def slow_choice(rules, state, scene, choice):
             if code == MOVING and not passes_clear(scene.around.moving, rules, rows, stop):
                 continue
             terms = evaluate(scene, rules, start, manoeuvre, rows)
-            risked = tail != FOLLOW or terms.risk > 0.0
+            risked = tail != FOLLOW or terms.risk + terms.nearness > 0.0
             total = objective(scene, rules, terms) - (0.0 if i == LAST else rules.config.hysteresis)
             if total > best[0]:
                 best = total, terms

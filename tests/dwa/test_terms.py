@@ -15,7 +15,7 @@ from dynastar.dwa.scene import FOLLOW, Manoeuvre
 from dynastar.footprint import Footprint
 from dynastar.guidance.cost_to_go import turn_to_descent, value_at
 from dynastar.perception import MovingObstacle, PredictionConfig
-from dynastar.perception.prediction import WEIGHTS, Times, predict
+from dynastar.perception.prediction import DISCOUNTED, WEIGHTS, Times, predict
 from dynastar.perception.tracking_kernels import REST_SPEED
 from dynastar.robot import ROBOTS, Limits, Robot, slew
 from scenes import STEP, STEPS, boxed, empty, field_of, rules_for, scene_of, start_of
@@ -194,7 +194,7 @@ def test_risk_is_the_worst_discounted_probability_of_each_hypothesis(seed):
         for weight, travel in zip(WEIGHTS, travels, strict=True):
             mean = np.array([x, y]) + travel[:, None] * np.array([vx, vy])
             gaps = np.hypot(*(mean - places).T) - RULES.risk_radius - radius
-            p = np.exp(-after / config.memory) / (1.0 + np.exp(1.702 * gaps / deviation))
+            p = np.exp(-after / DISCOUNTED) / (1.0 + np.exp(1.702 * gaps / deviation))
             expected += weight * np.where(gaps < 3.0 * deviation, p, 0.0).max()
     assert t.risk(moving, RULES, rows) == pytest.approx(expected, abs=1e-9)
     assert t.risk(predict([], config, Times(0.0, STEP, STEPS)), RULES, rows) == 0.0
@@ -217,17 +217,36 @@ def test_a_manoeuvre_passes_clear_if_no_obstacle_at_its_velocity_touches_for_so_
     assert t.passes_clear(moving, RULES, rows, wanted) == clear
 
 
+@given(seeds)
+@settings(max_examples=50, deadline=None)
+def test_nearness_is_the_largest_discounted_part_of_the_personal_space(seed):
+    random = np.random.default_rng(seed)
+    obstacles, rows = random_obstacles(random), random_rows(random)
+    latency, after = 0.2, STEP * SCHEDULE.step
+    moving = predict(obstacles, PredictionConfig(), Times(latency, STEP, STEPS))
+    space, expected = RULES.config.personal_space, 0.0
+    for x, y, vx, vy, radius in obstacles:
+        mean = np.array([x, y]) + (latency + after)[:, None] * np.array([vx, vy])
+        gaps = (
+            np.hypot(*(mean - np.column_stack([rows["x"], rows["y"]])).T)
+            - RULES.risk_radius
+            - radius
+        )
+        expected += (np.exp(-after / DISCOUNTED) * np.clip(1.0 - gaps / space, 0.0, 1.0)).max()
+    assert t.nearness(moving, RULES, rows) == pytest.approx(expected, abs=1e-9)
+
+
 # -- Eq. 9 ----------------------------------------------------------------------------------------
 
 
 @given(
-    st.lists(st.floats(0, 10), min_size=5, max_size=5),
-    st.lists(st.floats(-1, 1), min_size=5, max_size=5),
+    st.lists(st.floats(0, 10), min_size=6, max_size=6),
+    st.lists(st.floats(-1, 1), min_size=6, max_size=6),
 )
 @settings(deadline=None)
-def test_the_objective_is_the_weighted_sum_less_the_risk(weights, terms):
+def test_the_objective_is_the_weighted_sum_less_risk_and_nearness(weights, terms):
     rules = RULES._replace(config=DwaConfig(Weights(*weights)))
-    signs = (1, 1, 1, 1, -1)
+    signs = (1, 1, 1, 1, -1, -1)
     expected = sum(s * w * term for s, w, term in zip(signs, weights, terms, strict=True))
     assert t.objective(SCENE, rules, t.Terms(*terms)) == pytest.approx(expected, abs=1e-9)
 
@@ -243,4 +262,5 @@ def test_the_terms_of_a_manoeuvre_are_those_of_its_rows():
         vel=t.vel(rules, MANOEUVRE),
         simi=t.simi(scene.distance_to_path, rules, rows),
         risk=t.risk(scene.around.moving, rules, rows),
+        nearness=t.nearness(scene.around.moving, rules, rows),
     )

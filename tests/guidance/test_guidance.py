@@ -6,7 +6,7 @@ import pytest
 from dynastar.clearance import lower_bounds
 from dynastar.field import Field
 from dynastar.guidance import Encounter, Guidance, PathTarget
-from dynastar.guidance.guidance import FACTOR
+from dynastar.guidance.guidance import COARSENING
 from dynastar.path import Path
 from dynastar.perception import MovingObstacle, PredictionConfig
 from dynastar.perception.prediction import Times, predict
@@ -89,7 +89,7 @@ def test_the_line_starts_at_the_robot_and_descends():
     case = Case()
     guide = case.guide([HERE, (9.0, 7.0)])
     assert tuple(guide.line[0]) == HERE
-    assert case.guidance.resolution == pytest.approx(FACTOR * CELL)
+    assert case.guidance.resolution == pytest.approx(COARSENING * CELL)
     assert np.hypot(*np.diff(guide.line, axis=0).T) == pytest.approx(case.guidance.resolution)
     assert (np.diff([guide.cost_at(x, y) for x, y in guide.line]) < 0.0).all()
 
@@ -120,7 +120,7 @@ def test_distances_to_the_path_are_computed_where_it_is_kept_to():
     assert case.guide(points).distance_to_path is case.obstacles  # not needed
     for guide in (case.guide(points, ahead=5.0), Case(keep_to_path=True).guide(points)):
         field = guide.distance_to_path
-        assert field.resolution == pytest.approx(FACTOR * CELL)
+        assert field.resolution == pytest.approx(COARSENING * CELL)
         for row, column in ((50, 70), (60, 70), (20, 90), (52, 40)):
             x, y = (column + 0.5) * field.resolution, (row + 0.5) * field.resolution
             true = math.hypot(max(5.0 - x, x - 9.0, 0.0), y - 5.0)

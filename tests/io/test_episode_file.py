@@ -60,7 +60,7 @@ def traced() -> Episode:
         candidates=rng.random((3 * n, 3)),
         refused=np.zeros(3 * n, np.uint8),
         candidate_rows=np.full(n, 3),
-        terms=rng.random((n, 5)),
+        terms=rng.random((n, 6)),
         chosen=rng.random((n, 3)),
         tracks=rng.random((n, 5)),
         track_rows=np.ones(n, np.int64),

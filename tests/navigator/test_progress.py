@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dynastar.navigator.progress import RESTART, STEP, Progress
+from dynastar.navigator.progress import ADVANCE, RESTART, Progress
 
 
 def towards(goal, offset=0.0):
@@ -21,14 +21,14 @@ def times_stuck(progress, places, start=0.0, offset=lambda k: 0.0):
 
 
 def test_a_lower_cost_to_go_is_progress():
-    assert times_stuck(Progress(3.0), [2.0 * STEP * k for k in range(40)]) == []
+    assert times_stuck(Progress(3.0), [2.0 * ADVANCE * k for k in range(40)]) == []
 
 
 def test_slow_progress_counts_once_it_adds_up():
-    assert times_stuck(Progress(3.0), [0.4 * STEP * k for k in range(40)]) == []
+    assert times_stuck(Progress(3.0), [0.4 * ADVANCE * k for k in range(40)]) == []
 
 
-@pytest.mark.parametrize("drift", [0.0, 0.1 * STEP, -0.1])
+@pytest.mark.parametrize("drift", [0.0, 0.1 * ADVANCE, -0.1])
 def test_without_progress_for_the_patience_the_robot_is_stuck(drift):
     progress = Progress(3.0)
     assert times_stuck(progress, [drift * k for k in range(5)]) == [4.0]
@@ -48,7 +48,7 @@ def test_time_without_a_path_is_time_without_progress():
 
 @pytest.mark.parametrize("offset", [lambda k: 3.0 * (k % 2), lambda k: 0.5 * k, lambda k: -0.5 * k])
 def test_a_cost_to_go_that_changes_everywhere_says_nothing(offset):
-    assert times_stuck(Progress(3.0), [2.0 * STEP * k for k in range(40)], offset=offset) == []
+    assert times_stuck(Progress(3.0), [2.0 * ADVANCE * k for k in range(40)], offset=offset) == []
     assert times_stuck(Progress(3.0), [0.0] * 5, offset=offset) == [4.0]
 
 

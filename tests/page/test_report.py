@@ -90,6 +90,13 @@ def test_a_trace_is_saved_and_loaded(episode, tmp_path):
         assert np.array_equal(getattr(loaded, name), value, equal_nan=name in ("terms", "chosen"))
 
 
+def test_an_episode_of_when_eq_9_had_fewer_terms_is_shown(episode, tmp_path):
+    older = replace(episode, trace=replace(episode.trace, terms=episode.trace.terms[:, :5]))
+    io.save_episode(older, tmp_path / "older.npz")
+    [data] = data_of(report_html([io.load_episode(tmp_path / "older.npz")]))
+    assert data["termNames"] == ["heading", "dist", "vel", "simi", "risk"]
+
+
 def test_a_trace_changes_nothing(episode):
     scenario = replace(io.load_scenario(EXAMPLES / "features" / "movers.toml"), time_limit=8.0)
     assert np.array_equal(io.run(scenario).commands, episode.commands)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dynastar.clearance import FAR
-from dynastar.perception.hidden import FACTOR, HIDDEN_RADIUS, HiddenSpace
+from dynastar.perception.hidden import COARSENING, HIDDEN_RADIUS, HiddenSpace
 
 N, CELL, SPEED = 120, 0.05, 0.5  # 6 x 6 m
 NONE = np.zeros((N, N), bool)
@@ -101,7 +101,7 @@ def test_it_moves_along_with_the_local_map():
     hiding.update((0, 0), box(0.0, 0.0, 3.0, 6.0), NONE, 0.0)
     hidden = hiding.update((20, -40), NONE, NONE, 0.1)
     assert (hidden.distance.x0, hidden.distance.y0) == pytest.approx((-2.0, 1.0))
-    assert hidden.distance.resolution == pytest.approx(CELL * FACTOR)
+    assert hidden.distance.resolution == pytest.approx(CELL * COARSENING)
     assert distance_at(hidden, 1.5, 3.0) > 0.8
     assert distance_at(hidden, -1.0, 3.0) == 0.0  # has come in unseen
 

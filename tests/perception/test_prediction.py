@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dynastar.perception import MovingObstacle, PredictionConfig
-from dynastar.perception.prediction import WEIGHTS, Times, contact_probability, predict
+from dynastar.perception.prediction import DISCOUNTED, WEIGHTS, Times, contact_probability, predict
 
 CONFIG = PredictionConfig()
 CONTINUES, STOPS, TURNS_BACK = range(3)
@@ -57,7 +57,7 @@ def test_the_deviation_of_an_obstacle_at_rest_does_not_grow(speed, share):
 
 def test_risk_is_discounted_from_when_a_command_acts():
     moving = predict([], CONFIG, Times(0.5, 0.1, 20))
-    assert moving.discount == pytest.approx(np.exp(-0.1 * np.arange(1, 21) / CONFIG.memory))
+    assert moving.discount == pytest.approx(np.exp(-0.1 * np.arange(1, 21) / DISCOUNTED))
 
 
 def test_the_hard_bound_is_that_of_the_settings():

@@ -90,6 +90,7 @@ ARMS: dict[str, Arm] = {
     "Eq. 9: gamma = 0": _weights(vel=0.0),
     "Eq. 9: weights as printed": _weights(heading=0.5, dist=0.2, vel=0.2, simi=0.1),
     "no risk": _weights(risk=0.0),
+    "no nearness": _weights(nearness=0.0),
     "no hysteresis": _window(hysteresis=0.0),
     "window of one period": _window(reach=0.0),
     "3 x 6 samples": _window(v_samples=3, omega_samples=6),

@@ -30,7 +30,7 @@ ADDED: dict[str, dict[str, Any]] = {
     "+ margins for declared errors": {"range_error": 0.0, "pose_error": 0.0, "drive_error": 0.0},
     "+ tracking and risk": {
         "tracker": {"widest": 0.1},  # m: the walker is wider, and so is seen as standing
-        "dwa": {"weights": {"risk": 0.0}},
+        "dwa": {"weights": {"risk": 0.0, "nearness": 0.0}},
     },
     "+ window of 1 s": {"dwa": {"reach": 0.0}},
     "+ people out of unseen space: preset paper": {"hidden_speed": 0.0},

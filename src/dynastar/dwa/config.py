@@ -7,13 +7,16 @@ from dynastar.config import Field, self_checking
 
 @self_checking
 class Weights(NamedTuple):
-    """alpha, beta, gamma, sigma and rho of Eq. 9."""
+    """alpha, beta, gamma and sigma of Eq. 9, rho of the risk and nu of the nearness."""
 
     heading: Annotated[float, Field("alpha: progress towards the goal", "", 0.0, 100.0)] = 1.0
     dist: Annotated[float, Field("beta: keeps clear of obstacles", "", 0.0, 100.0)] = 0.1
     vel: Annotated[float, Field("gamma: drives fast", "", 0.0, 100.0)] = 0.1
     simi: Annotated[float, Field("sigma: stays on the global path", "", 0.0, 100.0)] = 0.0
-    risk: Annotated[float, Field("rho: keeps away from moving obstacles", "", 0.0, 100.0)] = 20.0
+    risk: Annotated[float, Field("rho: avoids contact with moving obstacles", "", 0.0, 100.0)] = (
+        10.0
+    )
+    nearness: Annotated[float, Field("nu: keeps out of personal_space", "", 0.0, 100.0)] = 1.0
 
 
 @self_checking
@@ -34,6 +37,9 @@ class DwaConfig(NamedTuple):
     comfort: Annotated[
         float, Field("clearance beyond which the dist term is constant", "m", 0.01, 10.0)
     ] = 0.25
+    personal_space: Annotated[
+        float, Field("gap to moving obstacles below which nearness counts", "m", 0.01, 10.0)
+    ] = 0.45
     hysteresis: Annotated[
         float, Field("score by which a new manoeuvre must exceed the last one", "", 0.0, 10.0)
     ] = 0.02

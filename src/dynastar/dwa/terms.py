@@ -20,30 +20,32 @@ DEVIATIONS = 3.0  # standard deviations from which on a contact is not possible
 
 
 class Terms(NamedTuple):
-    """The terms of Eq. 9 of one trajectory; ``risk`` counts against it."""
+    """The terms of Eq. 9 of one trajectory; ``risk`` and ``nearness`` count against it."""
 
     heading: float
     dist: float
     vel: float
     simi: float
     risk: float
+    nearness: float
 
 
 @inner
 def evaluate(scene, rules, start, manoeuvre, rows):
-    """Eq. 8 and the risk: the terms of a manoeuvre from its roll-out ``rows``."""
+    """Eq. 8, risk and nearness: the terms of a manoeuvre from its roll-out ``rows``."""
     return Terms(
         progress(scene.cost_to_go, rules, start, rows),
         dist(rules, start, rows),
         vel(rules, manoeuvre),
         simi(scene.distance_to_path, rules, rows) if sigma(scene, rules) > 0.0 else 1.0,
         risk(scene.around.moving, rules, rows),
+        nearness(scene.around.moving, rules, rows),
     )
 
 
 @inner
 def objective(scene, rules, terms):
-    """Eq. 9: G = alpha heading + beta dist + gamma vel + sigma simi - rho risk."""
+    """Eq. 9: G = alpha heading + beta dist + gamma vel + sigma simi - rho risk - nu nearness."""
     weights = rules.config.weights
     return (
         weights.heading * terms.heading
@@ -51,6 +53,7 @@ def objective(scene, rules, terms):
         + weights.vel * terms.vel
         + sigma(scene, rules) * terms.simi
         - weights.risk * terms.risk
+        - weights.nearness * terms.nearness
     )
 
 
@@ -123,6 +126,28 @@ def risk(moving, rules, rows):
                     p = contact_probability(math.sqrt(square) - near, deviation)
                     highest = max(highest, moving.discount[k] * p)
             total += WEIGHTS[h] * highest
+    return total
+
+
+@inner
+def nearness(moving, rules, rows):
+    """Nearness term: how far each moving obstacle comes into ``personal_space``, over that, summed.
+
+    That is where it is expected, if it keeps its velocity, at its nearest, and discounted as risk is.
+    """
+    total, space = 0.0, rules.config.personal_space
+    for obstacle in moving.obstacles:
+        nearest, near = 0.0, rules.risk_radius + obstacle.radius
+        for i in range(len(rows)):
+            k = rules.schedule.step[i] - 1
+            travel = moving.travel[CONTINUES, k]
+            dx = obstacle.x + travel * obstacle.vx - rows[i].x
+            dy = obstacle.y + travel * obstacle.vy - rows[i].y
+            square, within = dx * dx + dy * dy, near + space
+            if square < within * within:
+                inside = min(1.0, (within - math.sqrt(square)) / space)
+                nearest = max(nearest, moving.discount[k] * inside)
+        total += nearest
     return total
 
 

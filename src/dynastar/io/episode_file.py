@@ -54,7 +54,7 @@ _TRACE: dict[str, tuple[Any, ...]] = {
     "candidates": ("k", 3),
     "refused": ("k",),
     "candidate_rows": ("t",),
-    "terms": ("t", 5),
+    "terms": ("t", -1),  # as many as Eq. 9 had when it was written
     "chosen": ("t", 3),
     "tracks": ("j", 5),
     "track_rows": ("t",),

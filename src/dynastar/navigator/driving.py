@@ -14,6 +14,7 @@ from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.sensing import View
 from dynastar.perception import LocalMap
 from dynastar.perception.planning_map import PlanningMap
+from dynastar.perception.prediction import DISCOUNTED
 from dynastar.robot import Robot
 
 Mask = npt.NDArray[np.bool_]
@@ -77,7 +78,7 @@ class Driving(Admissibility):
             radius=self.window.rules.risk_radius,
             begin=begin,
             step=step,
-            discount=math.exp(-begin / self.config.prediction.memory),
+            discount=math.exp(-begin / DISCOUNTED),
         )
         guide = self.guidance.update(
             view.distance_to_obstacle, closed, target, view.moving, encounter

@@ -90,7 +90,7 @@ def _data(episode: Episode) -> dict[str, Any]:
         ],
         "exploredFrame": list(episode.explored_frame),
         "events": [[event.stamp, event.kind, event.detail] for event in episode.events],
-        "termNames": TERMS,
+        "termNames": TERMS if episode.trace is None else TERMS[: episode.trace.terms.shape[1]],
         "refusals": {str(code): words for code, words in REFUSALS.items()},
         "trace": None if episode.trace is None else _trace(episode.trace),
     }

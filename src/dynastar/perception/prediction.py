@@ -21,6 +21,7 @@ Floats = npt.NDArray[np.float64]
 
 CONTINUES = 0  # the first hypothesis
 WEIGHTS = np.array([0.9, 0.08, 0.02])  # to continue, stop, turn back: see docs/prediction.md
+DISCOUNTED = 2.0  # s, time constant with which a later contact counts for less
 STOPPING_RATE = 2.0  # 1/s at which the speed of a moving obstacle that stops decays
 OBSTACLE = np.dtype([(name, np.float64) for name in MovingObstacle._fields])
 TRACKING_ERROR = 0.05  # m, bound of the error of a tracked position
@@ -39,7 +40,6 @@ class PredictionConfig(NamedTuple):
     spread: Annotated[
         float, Field("what is added to that deviation within a second or two", "m", 0.0, 5.0)
     ] = 0.2
-    memory: Annotated[float, Field("time constant that discounts risk", "s", 0.1, 60.0)] = 2.0
 
 
 class Times(NamedTuple):
@@ -83,7 +83,7 @@ def predict(moving: Sequence[MovingObstacle], config: PredictionConfig, times: T
         obstacles=obstacles,
         travel=np.stack([ahead, stopping, -ahead]),
         deviation=config.error + np.outer(spread, 1.0 - np.exp(-ahead)),
-        discount=np.exp(-after / config.memory),
+        discount=np.exp(-after / DISCOUNTED),
         acceleration=config.acceleration,
     )
 

@@ -24,9 +24,6 @@ class TrackerConfig(NamedTuple):
 
     widest: Annotated[float, Field("largest width of a moving obstacle", "m", 0.1, 5.0)] = 1.4
     fastest: Annotated[float, Field("largest speed of a moving obstacle", "m/s", 0.1, 50.0)] = 3.0
-    occluded_time: Annotated[
-        float, Field("time for which a track out of sight is kept", "s", 0.0, 60.0)
-    ] = 6.0
 
 
 class MovingObstacle(NamedTuple):

@@ -27,6 +27,7 @@ SURE = 2.0  # standard deviations
 STEADY = 0.14  # s that motion has to last
 FITS = 4.0  # the largest misfit of steady motion; 2 is expected
 SHIFT = 0.05  # m that the centre of what moves shifts by at most when an end comes into view or out
+OCCLUDED = 6.0  # s for which a track out of sight is kept
 MISSED = 0.35  # s that something in view may go undetected
 ACCELERATION = 0.1  # m2/s3, spectral density of the acceleration
 REST_SPEED = 0.12  # m/s below which a track is at rest
@@ -94,7 +95,7 @@ def update(tracks, groups, points, sensor, space, config, dt):
     associate(tracks, groups, now)
     for track in tracks:
         if track.group == NO_GROUP:
-            hide(track, dt, now, space, config.occluded_time)
+            hide(track, dt, now, space)
         else:
             correct(track, groups[track.group], points, sensor)
             judge(track, groups[track.group], points, space, now, config.fastest)
@@ -197,13 +198,13 @@ def shift(track, dx, dy):
 
 
 @inner
-def hide(track, dt, now, space, keep):
-    """Keep a track without a group where space was not just seen free; drop it after ``keep`` s.
+def hide(track, dt, now, space):
+    """Keep a track without a group where space was not just seen free; drop it after ``OCCLUDED`` s.
 
     Where it would come into view it waits behind the edge; where its place is in view it is lost.
     """
     unseen = now - track.seen
-    if unseen > (MISSED if track.state == TENTATIVE else keep):
+    if unseen > (MISSED if track.state == TENTATIVE else OCCLUDED):
         track.state = LOST
     elif track.state != TENTATIVE and seen_free_at(track.x, track.y, space) > now - MISSED:
         track.x -= track.vx * dt

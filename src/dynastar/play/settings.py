@@ -25,6 +25,7 @@ SLIDERS: Mapping[str, Slider] = {
     "dwa.weights.vel": Slider(0.0, 2.0, 0.05, "gamma, speed"),
     "dwa.weights.simi": Slider(0.0, 2.0, 0.05, "sigma, similarity to the path"),
     "dwa.weights.risk": Slider(0.0, 50.0, 1.0, "rho, risk"),
+    "dwa.weights.nearness": Slider(0.0, 5.0, 0.1, "nu, nearness"),
     "dwa.horizon": Slider(0.5, 8.0, 0.5, "horizon, s"),
     "dwa.v_samples": Slider(2, 25, 1, "speeds sampled"),
     "dwa.omega_samples": Slider(3, 41, 2, "turning rates sampled"),

@@ -5,9 +5,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from dynastar.dwa.config import Weights
 from dynastar.episode import Trace
 
-NO_TERMS = np.full(5, np.nan, np.float32)
+NO_TERMS = np.full(len(Weights._fields), np.nan, np.float32)  # a weight for each term
 NO_CHOICE = np.full(3, np.nan, np.float32)
 
 
@@ -98,7 +99,7 @@ class Tracer:
             np.concatenate([np.empty((0, 3), np.float32), *self._candidates]),
             np.concatenate([np.empty(0, np.uint8), *self._refused]),
             np.array([len(one) for one in self._refused], np.int64),
-            np.array(self._terms, np.float32).reshape(-1, 5),
+            np.array(self._terms, np.float32).reshape(-1, len(NO_TERMS)),
             np.array(self._chosen, np.float32).reshape(-1, 3),
             np.concatenate([np.empty((0, 5), np.float32), *self._tracks]),
             np.array([len(one) for one in self._tracks], np.int64),

@@ -33,6 +33,7 @@ SPACE: tuple[Parameter, ...] = (
     Parameter("dwa.weights.vel", 0.02, 1.0, log=True),
     Parameter("dwa.weights.simi", 0.0, 0.5),
     Parameter("dwa.weights.risk", 2.0, 100.0, log=True),
+    Parameter("dwa.weights.nearness", 0.1, 10.0, log=True),
     Parameter("dwa.horizon", 2.0, 7.0),
     Parameter("dwa.comfort", 0.05, 0.6),
     Parameter("dwa.hysteresis", 0.0, 0.1),
@@ -40,7 +41,6 @@ SPACE: tuple[Parameter, ...] = (
     Parameter("dwa.reach", 0.3, 2.0),
     Parameter("comfort", 0.0, 0.4),
     Parameter("prediction.spread", 0.05, 0.5),
-    Parameter("prediction.memory", 0.5, 6.0, log=True),
 )
 OF_ROBOT = (Parameter("limits.v_max", 0.6, 1.0), Parameter("limits.omega_max", 0.5, 1.0))
 

@@ -1,6 +1,6 @@
 // What is shown of one robot beside its map: state, numbers, the window, lines over time, events.
 
-const TERM_SHADES = ["plan", "occupied", "robot", "seen", "contact"];
+const TERM_SHADES = ["plan", "occupied", "robot", "seen", "contact", "faint"];
 
 function element(kind, attributes = {}, ...children) {
   const made = document.createElement(kind);

@@ -67,7 +67,8 @@ class Replay {
       ["clearance, m", [["plan", this.clearance]]],
     ];
     if (this.terms) {
-      const named = this.data.termNames.map((name, i) => [TERM_SHADES[i], column(this.terms, 5, i), name]);
+      const names = this.data.termNames;
+      const named = names.map((name, i) => [TERM_SHADES[i], column(this.terms, names.length, i), name]);
       plots.push(["terms of Eq. 9 of the choice:", named]);
     }
     return plots;

@@ -90,7 +90,7 @@ BLOCKS = {
 STAGES = (
     ("window", "Eqs. 5 and 6:\nspeeds in reach", "dwa.window"),
     ("rollouts", "Eq. 4: an arc, then\na tail", "dwa.motion\ndwa.rollout"),
-    ("evaluation", "Eq. 9: heading,\ndist, vel, and risk", "dwa.terms\ndwa.search"),
+    ("evaluation", "Eq. 9: heading, dist,\nvel, risk, nearness", "dwa.terms\ndwa.search"),
     ("certified stop", "Eq. 7: of the best\nthat can still brake", "dwa.admissible"),
 )
 
