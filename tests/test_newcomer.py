@@ -48,7 +48,7 @@ LIMITS = Limits(1.0, 1.5, 0.8, 2.0, 0.8, 2.0)
         (lambda: NavigatorConfig(dwa=DwaConfig(v_samples=2.5)), "'DwaConfig.v_samples' is 2.5"),
         (lambda: NavigatorConfig(dwa={"v_samples": 1}), "'NavigatorConfig.dwa.v_samples' is 1"),
         (lambda: NavigatorConfig(unknown="fre"), "expected one of 'free', 'blocked'"),
-        (lambda: Weights(*range(6)), "Weights has 5 values, got 6"),
+        (lambda: Weights(*range(7)), "Weights has 6 values, got 7"),
         (lambda: Limits(-1, 1, 1, 1, 1, 1), "'Limits.v_max' is -1 m/s"),
         (lambda: LIMITS._replace(v_accel=0), "'Limits.v_accel' is 0 m/s2"),
         (lambda: Limits(1.0), "missing key 'Limits.omega_max'"),
