@@ -48,7 +48,7 @@ def test_the_search_begins_with_the_settings_it_is_given():
     assert (comfort.low, comfort.high) == (0.05, 2.0)
     assert values["limits.v_max"] == 1.0
     table = settings_table(values)
-    assert table["dwa"]["weights"]["risk"] == 10.0
+    assert table["dwa"]["weights"]["risk"] == 14.0
     assert "limits" not in table
 
 
