@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from results_parts import MAPS_BESIDE
 from results_tables import table
+from scipy.stats import bootstrap as resample
 
 from dynastar.bench.pairs import interval_in_words
 from dynastar.bench.statistics import bootstrap
@@ -28,7 +29,6 @@ QUALITY = {
 }
 SMOOTH = ("smoothness", "angular_acceleration", "omega_changes")
 SMOOTHEST = 1.2  # times pure_pursuit's, at most
-RESAMPLES = 10_000
 NEAR = {  # of docs/benchmarks.md: factor and format of each figure
     "nearest": (1.0, ".2f"),
     "within_0_2": (100.0, ".1f"),
@@ -75,11 +75,18 @@ def _ratio(pairs: Sequence[Sequence[float]]) -> str:
     ours, other = np.array(pairs, dtype=np.float64).T
     if other.mean() <= 0.0:
         return ""
-    drawn = np.random.default_rng(0).integers(len(ours), size=(RESAMPLES, len(ours)))
-    below = other[drawn].mean(axis=1)
-    low, high = np.quantile(
-        ours[drawn].mean(axis=1)[below > 0.0] / below[below > 0.0], (0.025, 0.975)
-    )
+    if len(ours) < 2:
+        return f"{ours.mean() / other.mean():.2f}"
+
+    def of_means(ours: Any, other: Any, axis: int) -> Any:
+        below = other.mean(axis)
+        return np.divide(
+            ours.mean(axis), below, out=np.full(below.shape, np.inf), where=below > 0.0
+        )
+
+    random = np.random.default_rng(0)
+    found = resample((ours, other), of_means, paired=True, method="percentile", random_state=random)
+    low, high = found.confidence_interval
     return f"{ours.mean() / other.mean():.2f} ({low:.2f} to {high:.2f})"
 
 

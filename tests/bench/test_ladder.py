@@ -37,7 +37,9 @@ def test_each_step_adds_what_its_name_says_and_nothing_else():
         before = step
 
 
-@pytest.mark.parametrize(("step", "tracked"), [(LEAST, False), ("+ tracking and risk", True)])
+@pytest.mark.parametrize(
+    ("step", "tracked"), [(LEAST, False), ("+ tracking, risk and nearness", True)]
+)
 def test_the_walker_is_tracked_from_the_step_of_that_name_on(step, tracked):
     speeds = []
 

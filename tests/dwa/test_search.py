@@ -290,7 +290,7 @@ def slow_choice(rules, state, scene, choice):
             if code == MOVING and not passes_clear(scene.around.moving, rules, rows, stop):
                 continue
             terms = evaluate(scene, rules, start, manoeuvre, rows)
-            risked = tail != FOLLOW or terms.risk + terms.nearness > 0.0
+            risked = tail != FOLLOW or terms.risk > 0.0
             total = objective(scene, rules, terms) - (0.0 if i == LAST else rules.config.hysteresis)
             if total > best[0]:
                 best = total, terms

@@ -12,9 +12,10 @@ import pytest
 
 from dynastar import io
 from dynastar.cli import main
-from dynastar.errors import InputError
+from dynastar.dwa.dwa import TERMS
+from dynastar.errors import EpisodeError, InputError
 from dynastar.page import report_html
-from dynastar.page.packing import runs
+from dynastar.page.packing import runs, static
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 KINDS = {"int8": "i1", "uint8": "u1", "uint16": "<u2", "int32": "<i4", "float32": "<f4"}
@@ -95,6 +96,18 @@ def test_an_episode_of_when_eq_9_had_fewer_terms_is_shown(episode, tmp_path):
     io.save_episode(older, tmp_path / "older.npz")
     [data] = data_of(report_html([io.load_episode(tmp_path / "older.npz")]))
     assert data["termNames"] == ["heading", "dist", "vel", "simi", "risk"]
+
+
+def test_an_episode_with_more_terms_than_are_known_is_refused(episode):
+    terms = np.zeros((len(episode.commands), 7), np.float32)
+    newer = replace(episode, trace=replace(episode.trace, terms=terms))
+    with pytest.raises(EpisodeError, match=r"has 7 terms of Eq\. 9, this dynastar knows 6"):
+        report_html([newer])
+
+
+def test_every_term_has_a_colour_of_its_own():
+    [shades] = re.findall(r"TERM_SHADES = \[(.*)\];", static("panel.js"))
+    assert len(set(shades.split(", "))) == len(shades.split(", ")) == len(TERMS)
 
 
 def test_a_trace_changes_nothing(episode):

@@ -28,7 +28,7 @@ Found = dict[str, dict[str, Any]]
 # What is added to the navigator, in this order, with the settings of the default that leave it out.
 ADDED: dict[str, dict[str, Any]] = {
     "+ margins for declared errors": {"range_error": 0.0, "pose_error": 0.0, "drive_error": 0.0},
-    "+ tracking and risk": {
+    "+ tracking, risk and nearness": {
         "tracker": {"widest": 0.1},  # m: the walker is wider, and so is seen as standing
         "dwa": {"weights": {"risk": 0.0, "nearness": 0.0}},
     },

@@ -135,7 +135,7 @@ def score(scene, rules, start, i, candidate, rows):
         terms = evaluate(scene, rules, start, manoeuvre, rows)
         total = objective(scene, rules, terms) - change
         if tail == FOLLOW:
-            risked = terms.risk + terms.nearness > 0.0
+            risked = terms.risk > 0.0
         if total > candidate.score:
             candidate.score, candidate.tail, candidate.hold = total, tail, hold
             candidate.heading, candidate.dist, candidate.vel = terms.heading, terms.dist, terms.vel

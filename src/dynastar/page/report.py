@@ -13,7 +13,7 @@ import numpy as np
 
 from dynastar.dwa.dwa import REFUSALS, TERMS
 from dynastar.episode import Episode, Trace
-from dynastar.errors import InputError
+from dynastar.errors import EpisodeError, InputError
 from dynastar.io.files import jsonable
 from dynastar.page.packing import filled, grid_data, packed, runs, words
 from dynastar.writing import written_aside
@@ -90,10 +90,20 @@ def _data(episode: Episode) -> dict[str, Any]:
         ],
         "exploredFrame": list(episode.explored_frame),
         "events": [[event.stamp, event.kind, event.detail] for event in episode.events],
-        "termNames": TERMS if episode.trace is None else TERMS[: episode.trace.terms.shape[1]],
+        "termNames": TERMS if episode.trace is None else _names(episode.trace),
         "refusals": {str(code): words for code, words in REFUSALS.items()},
         "trace": None if episode.trace is None else _trace(episode.trace),
     }
+
+
+def _names(trace: Trace) -> tuple[str, ...]:
+    """Names of the terms that Eq. 9 had when the episode was recorded."""
+    columns = trace.terms.shape[1]
+    if columns > len(TERMS):
+        raise EpisodeError(
+            f"the episode has {columns} terms of Eq. 9, this dynastar knows {len(TERMS)}"
+        )
+    return TERMS[:columns]
 
 
 def _trace(trace: Trace) -> dict[str, Any]:
