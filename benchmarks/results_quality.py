@@ -85,7 +85,10 @@ def _ratio(pairs: Sequence[Sequence[float]]) -> str:
         )
 
     random = np.random.default_rng(0)
-    found = resample((ours, other), of_means, paired=True, method="percentile", random_state=random)
+    with np.errstate(invalid="ignore"):  # of its standard error, which is not used
+        found = resample(
+            (ours, other), of_means, paired=True, method="percentile", random_state=random
+        )
     low, high = found.confidence_interval
     return f"{ours.mean() / other.mean():.2f} ({low:.2f} to {high:.2f})"
 
