@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from results_parts import MAPS_BESIDE
 from results_tables import table
-from scipy.stats import bootstrap as resample
 
 from dynastar.bench.pairs import interval_in_words
 from dynastar.bench.statistics import bootstrap
@@ -75,22 +74,17 @@ def _ratio(pairs: Sequence[Sequence[float]]) -> str:
     ours, other = np.array(pairs, dtype=np.float64).T
     if other.mean() <= 0.0:
         return ""
-    if len(ours) < 2:
-        return f"{ours.mean() / other.mean():.2f}"
 
-    def of_means(ours: Any, other: Any, axis: int) -> Any:
-        below = other.mean(axis)
-        return np.divide(
-            ours.mean(axis), below, out=np.full(below.shape, np.inf), where=below > 0.0
-        )
+    def of_means(drawn: Any, axis: int) -> Any:
+        missions = drawn.astype(int)
+        below = other[missions].mean(axis)
+        infinite = np.full(below.shape, np.inf)
+        return np.divide(ours[missions].mean(axis), below, out=infinite, where=below > 0.0)
 
-    random = np.random.default_rng(0)
-    with np.errstate(invalid="ignore"):  # of its standard error, which is not used
-        found = resample(
-            (ours, other), of_means, paired=True, method="percentile", random_state=random
-        )
-    low, high = found.confidence_interval
-    return f"{ours.mean() / other.mean():.2f} ({low:.2f} to {high:.2f})"
+    ratio = f"{ours.mean() / other.mean():.2f}"
+    with np.errstate(invalid="ignore"):  # of scipy's standard error, which is not used
+        ends = bootstrap(range(len(ours)), of_means)
+    return ratio if ends is None else f"{ratio} ({ends[0]:.2f} to {ends[1]:.2f})"
 
 
 def near_table(found: Found) -> str:

@@ -1,5 +1,6 @@
 """Tables of how smoothly the robot drives and how near to people, from made-up results."""
 
+import re
 import sys
 from pathlib import Path
 
@@ -9,6 +10,14 @@ import results_quality as tables
 
 def row(outcome="arrived", **more):
     return {"outcome": outcome, **dict.fromkeys(tables.QUALITY, 1.0), **more}
+
+
+def test_a_ratio_has_the_interval_of_the_pairs():
+    pairs = [(2.0 * x, x) for x in (0.5, 1.0, 4.0)]
+    assert tables._ratio(pairs) == "2.00 (2.00 to 2.00)"
+    low, high = re.findall(r"[\d.]+|inf", tables._ratio([(1.0, 1.0), (3.0, 1.0)]))[1:]
+    assert (low, high) == ("1.00", "3.00")
+    assert tables._ratio([(1.0, 0.0), (1.0, 1.0)]).endswith(" to inf)")
 
 
 def test_quality_is_compared_where_both_arrived():
