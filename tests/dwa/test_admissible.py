@@ -252,7 +252,7 @@ def test_the_robot_approaches_unseen_space_as_fast_as_it_rests_before_a_person_c
 
 @pytest.mark.parametrize("v", [0.4, 0.6, 0.8])
 def test_an_obstacle_that_moves_does_not_hide_that_somebody_may_step_out(v):
-    """Refused for the hidden person, which nothing makes good, also if an obstacle can come before."""
+    """Refused for the hidden person, also if an obstacle can come before."""
     stop = v / WEAK.v_brake
     needs = v * PERIOD + 0.5 * v * stop + 0.5 * (PERIOD + stop) + 0.25 + 0.3 - 0.1
     state = state_at(4.8 - needs + 0.4, 4.0, 0.0, v, 0.0)

@@ -8,7 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dynastar.dwa import DynamicWindow
-from dynastar.dwa.admissible import ADMISSIBLE, MOVING, NO_STOP, certified_stop, rests_in_time
+from dynastar.dwa.admissible import (
+    ADMISSIBLE,
+    HIDDEN,
+    MOVING,
+    NO_STOP,
+    certified_stop,
+    rests_in_time,
+)
 from dynastar.dwa.clearance import least_clearance
 from dynastar.dwa.config import DwaConfig, Weights
 from dynastar.dwa.dwa import TERMS, StopStart
@@ -207,6 +214,21 @@ def test_a_command_that_leads_into_unseen_space_is_refused_whatever_else_moves()
             assert (choice.refusals["unseen space"] > 0) == (not drives)
 
 
+def test_who_is_there_counts_for_more_than_who_may_step_out():
+    """The robot drives on towards unseen space where a stop would end in a walker's way, and else not."""
+    distance = np.repeat(np.linspace(6.0, -2.0, 80)[None], 80, axis=0)
+    pose, twist = Pose2D(3.0, 4.0, 0.0), Twist(1.0, 0.0)
+    stops_at = pose.x + 0.5 / LIMITS.v_brake
+    for x, drives in ((stops_at - 0.4, True), (stops_at + 2.0, False)):
+        walker = MovingObstacle(x, 4.0 + 2.4, 0.0, -1.0, 0.3)
+        scene = scene_of(
+            empty(), moving=[walker], hidden=hidden_in(distance, 2.0),
+            last=Manoeuvre(1.0, 0.0, 0.5, FOLLOW),
+        )  # fmt: skip
+        choice = DynamicWindow(ROUND, DwaConfig(), PERIOD).choose(pose, twist, scene)
+        assert (choice.command is not None) == drives
+
+
 def test_samples_are_all_pairs_of_reachable_speeds():
     twist = Twist(0.4, 0.2)
     choice = choose(empty(), (4.0, 4.0, 0.0), twist, config=DwaConfig(reach=0.5))
@@ -263,13 +285,19 @@ def slow_choice(rules, state, scene, choice):
     rows = np.zeros(len(schedule.step), ROW)
     rows[0] = (*state.pose, state.v, gap, True)
     here = state_value(scene.cost_to_go, limits, rows.view(np.recarray)[0])
-    start = start_of(rules, state, gap, here)
+    start, moving = start_of(rules, state, gap, here), scene.around.moving
+    rests = roll_out(scene, rules, start, Manoeuvre(0.0, 0.0, 0.0, STOP), rows)
+    in_the_way = rests and not passes_clear(moving, rules, rows, 99.0)
     for i, (v, omega) in enumerate(choice.samples):
         command = (
             slew(state.v, v, limits.v_accel, limits.v_brake, PERIOD),
             slew(state.omega, omega, limits.omega_accel, limits.omega_brake, PERIOD),
         )
         code = rests_in_time(scene.around, rules, state, command)
+        clear_for = {
+            MOVING: scene.around.latency + PERIOD + stopping_time(*command, limits),
+            HIDDEN: 99.0,
+        }
         short = schedule.held * schedule.period
         kinds = [(short, tail) for tail in (FOLLOW, STOP, BACK)]
         if abs(v) >= 0.1 * limits.v_max and abs(omega) <= 2.0:
@@ -279,15 +307,14 @@ def slow_choice(rules, state, scene, choice):
         if i == LAST:
             kinds = [(scene.last.hold, scene.last.tail)]
         best, risked = (-np.inf, None), True
-        for hold, tail in kinds if code in (ADMISSIBLE, MOVING) else []:
+        for hold, tail in kinds if code != HIDDEN or in_the_way else []:
             risked |= tail == FOLLOW
             if not risked:
                 continue
             manoeuvre = Manoeuvre(v, omega, hold, tail)
             if not roll_out(scene, rules, start, manoeuvre, rows):
                 continue
-            stop = scene.around.latency + PERIOD + stopping_time(*command, limits)
-            if code == MOVING and not passes_clear(scene.around.moving, rules, rows, stop):
+            if code in clear_for and not passes_clear(moving, rules, rows, clear_for[code]):
                 continue
             terms = evaluate(scene, rules, start, manoeuvre, rows)
             risked = tail != FOLLOW or terms.risk > 0.0
@@ -310,7 +337,9 @@ def test_every_candidate_is_refused_or_scored_by_its_best_manoeuvre(seed, count,
     ]
     last = Manoeuvre(0.4, 0.1, random.choice([0.0, 0.3]), int(random.choice([FOLLOW, STOP, BACK])))
     closed, latency = scattered(random, random.choice([0.0, 0.001])), random.uniform(0.0, 0.6)
-    scene = scene_of(closed, moving=moving, latency=latency, last=last)
+    corner = np.hypot(*np.indices((80, 80)) * 0.1 - random.uniform(0.0, 8.0, (2, 1, 1)))
+    hidden = hidden_in(corner, random.choice([0.0, 0.5, 2.0]))
+    scene = scene_of(closed, moving=moving, latency=latency, last=last, hidden=hidden)
     window = DynamicWindow(ROUND, DwaConfig(), PERIOD)
     choice, state = window.choose(pose, twist, scene), state_at(*pose, *twist)
     refused, score, terms, stops = zip(

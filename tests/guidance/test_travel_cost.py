@@ -37,7 +37,7 @@ def test_the_cost_of_a_metre_rises_towards_obstacles(seed):
 def test_a_moving_obstacle_costs_where_and_when_the_robot_meets_it():
     """It crosses ahead; the robot arrives when it is at (3.05, 2), not when it was before that."""
     moving = predict([MovingObstacle(3.05, 0.5, 0.0, 0.5, 0.3)], CONFIG, Times(0.0, 0.1, 40))
-    encounter, cost = Encounter(0.05, 2.0, 1.0, 0.3, 0.0, 0.1, 1.0), cost_of(40, 60)
+    encounter, cost = Encounter(0.05, 2.0, 1.0, 0.3, 0.0, 0.1), cost_of(40, 60)
     add_encounters(cost, moving, encounter)
     at_most = math.exp(-3.0 / DISCOUNTED) * ENCOUNTER_COST
     assert cost.values[20, 30] > 1.0 + 0.5 * 0.7 * at_most
@@ -60,8 +60,7 @@ def test_every_cell_costs_what_all_encounters_on_arrival_do(seed):
     latency, step, steps = 0.05, 0.1, 30
     moving = predict(obstacles, CONFIG, Times(latency, step, steps))
     place, speed, cost = (1.5, 1.0), 0.9, cost_of(20, 30)
-    discount = math.exp(-latency / DISCOUNTED)
-    add_encounters(cost, moving, Encounter(*place, speed, 0.3, latency, step, discount))
+    add_encounters(cost, moving, Encounter(*place, speed, 0.3, latency, step))
     times = latency + step * np.arange(1, steps + 1)
     for row, column in np.ndindex(cost.values.shape):
         cell = np.array([column + 0.5, row + 0.5]) * A
@@ -73,6 +72,6 @@ def test_every_cell_costs_what_all_encounters_on_arrival_do(seed):
                 gaps = np.hypot(*(mean - cell).T) - 0.3 - radius
                 p = 1.0 / (1.0 + np.exp(1.702 * gaps / deviations[k]))
                 p[gaps >= 2.0 * deviations[k]] = 0.0
-                discounted = math.exp(-times[k] / DISCOUNTED) * (p * WEIGHTS).sum()
+                discounted = math.exp(-(k + 1) * step / DISCOUNTED) * (p * WEIGHTS).sum()
                 expected += ENCOUNTER_COST * discounted
         assert cost.values[row, column] == pytest.approx(expected)

@@ -7,7 +7,12 @@ import pytest
 
 from driving import LIMITS, room, under_way
 from dynastar.dwa.scene import AT_REST
+from dynastar.footprint import Footprint
 from dynastar.grid import GridFrame, OccupancyGrid
+from dynastar.navigator import NavigatorConfig
+from dynastar.navigator.admissibility import Admissibility
+from dynastar.perception.prediction import DISCOUNTED
+from dynastar.robot import Lidar, Robot
 
 
 def test_another_map_of_the_same_yaw_keeps_manoeuvre_and_line():
@@ -25,11 +30,16 @@ def test_another_map_of_the_same_yaw_keeps_manoeuvre_and_line():
 
 def test_the_lookahead_is_what_can_be_driven_within_the_roll_outs():
     drive = under_way(latency=0.2)
-    begin, step, steps = drive.navigator.driving.times
-    assert begin == 0.2
+    begin, step, steps, discounted = drive.navigator.driving.times
+    assert (begin, discounted) == (0.2, DISCOUNTED)  # it brakes within 4 s
     horizon = drive.navigator.config.dwa.horizon + 0.5 * LIMITS.v_max / LIMITS.v_brake
     assert step * steps == pytest.approx(horizon, abs=8 * step)
     assert drive.navigator.driving.lookahead == pytest.approx(LIMITS.v_max * step * steps)
+
+
+def test_a_robot_that_brakes_slowly_discounts_later_contacts_less():
+    robot = Robot("slow brakes", LIMITS._replace(v_brake=0.1), Footprint.disc(0.3), Lidar(90, 3.0))
+    assert Admissibility(robot, NavigatorConfig()).times.discounted == 0.5 * LIMITS.v_max / 0.1
 
 
 def scene_on(grid):

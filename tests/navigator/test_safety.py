@@ -9,6 +9,7 @@ from dynastar.footprint import Footprint
 from dynastar.geometry import Pose2D, Twist
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.navigator import Navigator, RobotState
+from dynastar.perception.prediction import Times
 from dynastar.robot import Lidar, Robot
 from dynastar.simulation.lidar import LidarSimulator
 
@@ -52,7 +53,7 @@ def distance_to_hidden(drive):
     drive.tick(with_ranges(scan, np.where(np.cos(scan.angles) > 0.0, scan.ranges, np.nan)))
     sensing = drive.navigator.sensing
     x, y, _ = drive.pose
-    return distance_at(sensing.view(drive.now, None, (0.0, 0.1, 20)).hidden.distance, x, y)
+    return distance_at(sensing.view(drive.now, None, Times(0.0, 0.1, 20)).hidden.distance, x, y)
 
 
 @pytest.mark.parametrize("lose", [forget, jump])

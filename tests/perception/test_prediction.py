@@ -55,9 +55,10 @@ def test_the_deviation_of_an_obstacle_at_rest_does_not_grow(speed, share):
     assert moving.deviation[0, -1] == pytest.approx(CONFIG.error + share * most)
 
 
-def test_risk_is_discounted_from_when_a_command_acts():
-    moving = predict([], CONFIG, Times(0.5, 0.1, 20))
-    assert moving.discount == pytest.approx(np.exp(-0.1 * np.arange(1, 21) / DISCOUNTED))
+@pytest.mark.parametrize("discounted", [DISCOUNTED, 5.0])
+def test_risk_is_discounted_from_when_a_command_acts(discounted):
+    moving = predict([], CONFIG, Times(0.5, 0.1, 20, discounted))
+    assert moving.discount == pytest.approx(np.exp(-0.1 * np.arange(1, 21) / discounted))
 
 
 def test_the_hard_bound_is_that_of_the_settings():

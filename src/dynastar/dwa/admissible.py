@@ -169,7 +169,7 @@ def rests_in_time(around, rules, state, command):
                 if at_start > need or gap < at_start - NEARER:
                     return HIDDEN
         if code == ADMISSIBLE and reaches(around.moving, body, start, pose, around.latency + t):
-            code = MOVING  # a later check may yet find HIDDEN, which nothing makes good
+            code = MOVING  # a later check may yet find HIDDEN, for which more is asked
     return code
 
 

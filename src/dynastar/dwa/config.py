@@ -13,7 +13,9 @@ class Weights(NamedTuple):
     dist: Annotated[float, Field("beta: keeps clear of obstacles", "", 0.0, 100.0)] = 0.1
     vel: Annotated[float, Field("gamma: drives fast", "", 0.0, 100.0)] = 0.1
     simi: Annotated[float, Field("sigma: stays on the global path", "", 0.0, 100.0)] = 0.0
-    risk: Annotated[float, Field("rho: avoids contact with what moves", "", 0.0, 100.0)] = 14.0
+    risk: Annotated[float, Field("rho: avoids contact with moving obstacles", "", 0.0, 100.0)] = (
+        14.0
+    )
     nearness: Annotated[float, Field("nu: keeps out of personal_space", "", 0.0, 100.0)] = 1.0
 
 

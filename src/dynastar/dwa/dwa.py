@@ -133,7 +133,7 @@ def rules_of(robot: Robot, config: DwaConfig, period: float, drive_error: float 
 class Choice:
     """Result of a tick: the command, its manoeuvre and the rest of that manoeuvre.
 
-    ``samples`` (n, 2), ``refused`` (n,) codes (0 not refused), ``terms`` (n, 5) and ``score`` (n,) are
+    ``samples`` (n, 2), ``refused`` (n,) codes (0 not refused), ``terms`` (n, 6) and ``score`` (n,) are
     copies; candidates without an admissible manoeuvre score -inf. Below the best score no stop is
     certified. The first two are the rest of the last manoeuvre and following the cost-to-go at once.
     ``limited_by`` says what kept the command from being faster.

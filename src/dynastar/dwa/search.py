@@ -8,11 +8,18 @@ last, and following the cost-to-go at once.
 import numpy as np
 
 from dynastar.compiled import allocating, inner, njit
-from dynastar.dwa.admissible import ADMISSIBLE, MOVING, NO_STOP, rests_in_time, stops_are_certified
+from dynastar.dwa.admissible import (
+    ADMISSIBLE,
+    HIDDEN,
+    MOVING,
+    NO_STOP,
+    rests_in_time,
+    stops_are_certified,
+)
 from dynastar.dwa.clearance import least_clearance
 from dynastar.dwa.motion import command_towards, driveable_sample, state_of, stopping_time
 from dynastar.dwa.rollout import Start, roll_out, tail_speeds, write
-from dynastar.dwa.scene import BACK, FOLLOW, TAILS, Manoeuvre
+from dynastar.dwa.scene import AT_REST, BACK, FOLLOW, TAILS, Manoeuvre
 from dynastar.dwa.terms import Terms, evaluate, most_progress, objective, passes_clear, state_value
 from dynastar.dwa.window import possible, reachable, spaced
 
@@ -34,21 +41,24 @@ def search(scene, rules, state, stops_from, candidates, rows):
     records ``stops_from``: a certificate takes longer than a score, so those below are not certified.
     Where a command does not rest in time before moving obstacles by their hard bound, a manoeuvre that
     begins with it is admissible only if it is clear of them, as they are expected to go on, for as long
-    as a stop takes: from whatever comes later the robot can still be at rest. ``rows`` is room for a
-    roll-out.
+    as a stop takes: from whatever comes later the robot can still be at rest. Where it does not rest in
+    time before a person who steps out of unseen space, the manoeuvre has to be clear of all moving
+    obstacles up to the horizon, and a stop has to end in the way of one: a person who is there counts
+    for more than one who may be. ``rows`` is room for a roll-out.
     """
     gap = least_clearance(scene.distance_to_obstacle, rules.body, state.pose) - scene.margin
     write(rows[0], state, gap, True)
     here = state_value(scene.cost_to_go, rules.limits, rows[0])
     start = Start(state, gap, here, most_progress(rules, state.v, here))
     n = fill_candidates(scene, rules, start, candidates)
+    in_the_way = stops_in_the_way(scene, rules, start, rows)
     at_latest, scores = state_of(stops_from[-1]), candidates[:n]["score"]
     for i in range(n):
         candidate = candidates[i]
         command = candidate.command_v, candidate.command_omega
         candidate.refused = rests_in_time(scene.around, rules, at_latest, command)
         candidate.score = -np.inf
-        if candidate.refused == ADMISSIBLE or candidate.refused == MOVING:
+        if candidate.refused != HIDDEN or in_the_way:
             score(scene, rules, start, i, candidate, rows)
     while True:
         best = scores.argmax()
@@ -58,6 +68,15 @@ def search(scene, rules, state, stops_from, candidates, rows):
         if stops_are_certified(scene.around, rules, stops_from, command):
             return n, best
         candidates[best].refused, scores[best] = NO_STOP, -np.inf
+
+
+@inner
+def stops_in_the_way(scene, rules, start, rows):
+    """Whether a moving obstacle that goes on as expected would touch the robot if it stopped now."""
+    moving = scene.around.moving
+    if len(moving.obstacles) == 0 or not roll_out(scene, rules, start, AT_REST, rows):
+        return False
+    return not passes_clear(moving, rules, rows, np.inf)
 
 
 @allocating
@@ -115,6 +134,8 @@ def score(scene, rules, start, i, candidate, rows):
     if candidate.refused == MOVING:
         clear_for = scene.around.latency + rules.period
         clear_for += stopping_time(candidate.command_v, candidate.command_omega, rules.limits)
+    elif candidate.refused == HIDDEN:
+        clear_for = np.inf
     change = 0.0 if i == LAST else rules.config.hysteresis
     short_hold, risked = candidate.hold, True
     for kind in range(2 * len(TAILS)):

@@ -18,7 +18,7 @@ DEVIATIONS = 2.0  # standard deviations from which on a moving obstacle costs no
 class Encounter(NamedTuple):
     """How the robot would meet moving obstacles: its place (m), speed (m/s) and radius (m).
 
-    Predictions are known from ``begin`` on, every ``step`` seconds; ``discount`` is that at ``begin``.
+    Predictions are known from ``begin`` on, every ``step`` seconds.
     """
 
     x: float
@@ -27,7 +27,6 @@ class Encounter(NamedTuple):
     radius: float
     begin: float
     step: float
-    discount: float
 
 
 def travel_cost(
@@ -49,7 +48,7 @@ def add_encounters(cost, moving, encounter):
     """Add what moving obstacles cost where the robot would meet them; ``cost`` is a Field.
 
     A cell costs ``ENCOUNTER_COST`` times the probability of a contact at the time when a robot that
-    drives straight there arrives, discounted with that time as risk is.
+    drives straight there arrives, discounted as risk is.
     """
     hypotheses, steps = moving.travel.shape
     rows, columns = cost.values.shape
@@ -80,5 +79,5 @@ def add_encounters(cost, moving, encounter):
                     square, within = dx * dx + dy * dy, near + DEVIATIONS * deviation
                     if square < within * within:
                         p = contact_probability(math.sqrt(square) - near, deviation)
-                        p *= WEIGHTS[h] * moving.discount[k] * encounter.discount
+                        p *= WEIGHTS[h] * moving.discount[k]
                         cost.values[row, column] += ENCOUNTER_COST * p

@@ -14,7 +14,7 @@ from dynastar.navigator.arrival import GENTLE_BRAKING
 from dynastar.navigator.config import NavigatorConfig, margin_of
 from dynastar.navigator.sensing import View
 from dynastar.perception.planning_map import PlanningMap
-from dynastar.perception.prediction import Times
+from dynastar.perception.prediction import DISCOUNTED, Times
 from dynastar.robot import Robot
 
 
@@ -30,9 +30,13 @@ class Admissibility:
 
     @property
     def times(self) -> Times:
-        """The times of the prediction: those of roll-outs from when a command acts."""
-        schedule = self.window.rules.schedule
-        return Times(self.config.latency, schedule.period, int(schedule.step[-1]))
+        """The times of the prediction: those of roll-outs from when a command acts.
+
+        What a robot that brakes slowly cannot stop for any more counts for as long as it takes.
+        """
+        schedule, limits = self.window.rules.schedule, self.robot.limits
+        discounted = max(DISCOUNTED, 0.5 * limits.v_max / limits.v_brake)
+        return Times(self.config.latency, schedule.period, int(schedule.step[-1]), discounted)
 
     def margin_at(self, v: float) -> float:
         """The margin (m) at a speed (m/s): an error of the heading counts over the way of a stop."""

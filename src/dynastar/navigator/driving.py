@@ -1,7 +1,5 @@
 """From what is known and a path to follow to a command: guidance, scene, dynamic window."""
 
-import math
-
 import numpy as np
 import numpy.typing as npt
 
@@ -14,7 +12,6 @@ from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.sensing import View
 from dynastar.perception import LocalMap
 from dynastar.perception.planning_map import PlanningMap
-from dynastar.perception.prediction import DISCOUNTED
 from dynastar.robot import Robot
 
 Mask = npt.NDArray[np.bool_]
@@ -40,7 +37,7 @@ class Driving(Admissibility):
     @property
     def lookahead(self) -> float:
         """The distance (m) that the robot can drive within the horizon."""
-        _, step, steps = self.times
+        _, step, steps, _ = self.times
         return self.robot.limits.v_max * step * steps
 
     def carry_on(self, before: "Driving") -> None:
@@ -70,7 +67,7 @@ class Driving(Admissibility):
 
         ``closed`` are the cells of the local map where no plan leads.
         """
-        begin, step, _ = self.times
+        begin, step, *_ = self.times
         encounter = Encounter(
             x=pose.x,
             y=pose.y,
@@ -78,7 +75,6 @@ class Driving(Admissibility):
             radius=self.window.rules.risk_radius,
             begin=begin,
             step=step,
-            discount=math.exp(-begin / DISCOUNTED),
         )
         guide = self.guidance.update(
             view.distance_to_obstacle, closed, target, view.moving, encounter

@@ -21,7 +21,7 @@ Floats = npt.NDArray[np.float64]
 
 CONTINUES = 0  # the first hypothesis
 WEIGHTS = np.array([0.9, 0.08, 0.02])  # to continue, stop, turn back: see docs/prediction.md
-DISCOUNTED = 2.0  # s, time constant with which a later contact counts for less
+DISCOUNTED = 2.0  # s, least time constant with which a later contact counts for less
 STOPPING_RATE = 2.0  # 1/s at which the speed of a moving obstacle that stops decays
 OBSTACLE = np.dtype([(name, np.float64) for name in MovingObstacle._fields])
 TRACKING_ERROR = 0.05  # m, bound of the error of a tracked position
@@ -45,12 +45,14 @@ class PredictionConfig(NamedTuple):
 class Times(NamedTuple):
     """The times of a prediction: step k of ``steps`` is ``begin`` + (k + 1) ``step`` seconds from now.
 
-    ``begin`` is when a command acts.
+    ``begin`` is when a command acts, ``discounted`` (s) the time constant with which a later contact
+    counts for less.
     """
 
     begin: float
     step: float
     steps: int
+    discounted: float = DISCOUNTED
 
 
 class Prediction(NamedTuple):
@@ -72,7 +74,7 @@ class Prediction(NamedTuple):
 
 def predict(moving: Sequence[MovingObstacle], config: PredictionConfig, times: Times) -> Prediction:
     """Predict moving obstacles at ``times``."""
-    begin, step, steps = times
+    begin, step, steps, _ = times
     after = step * np.arange(1.0, steps + 1.0)
     ahead = begin + after
     stopping = (1.0 - np.exp(-STOPPING_RATE * ahead)) / STOPPING_RATE
@@ -83,7 +85,7 @@ def predict(moving: Sequence[MovingObstacle], config: PredictionConfig, times: T
         obstacles=obstacles,
         travel=np.stack([ahead, stopping, -ahead]),
         deviation=config.error + np.outer(spread, 1.0 - np.exp(-ahead)),
-        discount=np.exp(-after / DISCOUNTED),
+        discount=np.exp(-after / times.discounted),
         acceleration=config.acceleration,
     )
 

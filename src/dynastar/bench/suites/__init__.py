@@ -40,6 +40,6 @@ def load_suite(name: str) -> "Suite":
         return import_module(choose(name, SUITES, "suite"))
     except ModuleNotFoundError as error:
         raise DataError(
-            f"the suite {name} needs the package {error.name}, which is not installed; the extras of "
-            "dynastar are in its README"
+            f"the suite {name} needs the package {error.name}, which is not installed; docs/extras.md "
+            "says which extra has it"
         ) from None
