@@ -337,7 +337,13 @@ def test_every_candidate_is_refused_or_scored_by_its_best_manoeuvre(seed, count,
     ]
     last = Manoeuvre(0.4, 0.1, random.choice([0.0, 0.3]), int(random.choice([FOLLOW, STOP, BACK])))
     closed, latency = scattered(random, random.choice([0.0, 0.001])), random.uniform(0.0, 0.6)
-    corner = np.hypot(*np.indices((80, 80)) * 0.1 - random.uniform(0.0, 8.0, (2, 1, 1)))
+    ahead = twist.v * random.uniform(0.5, 1.5)  # m, to where a stop ends, more or less
+    place = pose.x + ahead * math.cos(pose.theta), pose.y + ahead * math.sin(pose.theta)
+    if count > 0:  # somebody gets there soon
+        late, way = random.uniform(0.5, 3.0), random.uniform(-3.0, 3.0)
+        v = math.cos(way), math.sin(way)
+        moving[0] = MovingObstacle(place[0] - late * v[0], place[1] - late * v[1], *v, 0.3)
+    corner = np.hypot(*np.indices((80, 80)) * 0.1 - np.reshape(place[::-1], (2, 1, 1))) + ahead
     hidden = hidden_in(corner, random.choice([0.0, 0.5, 2.0]))
     scene = scene_of(closed, moving=moving, latency=latency, last=last, hidden=hidden)
     window = DynamicWindow(ROUND, DwaConfig(), PERIOD)
