@@ -11,6 +11,7 @@ import argparse
 import json
 import os
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -43,6 +44,7 @@ PARTS = {  # with people or discs that move: their suite
     "office": "office",
     "maps": "maps",
     "navground": "navground",
+    "table3": "paper",
 }
 BEFORE = 3.0  # s before the contact in which the robot's greatest speed is looked for
 SEEN = 1.0  # s before the stopping time in which a reading must have hit the person
@@ -143,6 +145,12 @@ def examine(job: Job) -> dict[str, Any]:
     return of | examined(episode, scenario)
 
 
+def rows_of(result: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The rows of a part's missions; of Table III those of the default."""
+    rows = result["rows"]
+    return list(rows["table3-default"] if isinstance(rows, Mapping) else rows)
+
+
 def jobs(folder: Path, seed: int) -> list[Job]:
     """The missions of all parts that ended with a contact while moving."""
     found = []
@@ -154,7 +162,7 @@ def jobs(folder: Path, seed: int) -> list[Job]:
         options = Options(seed=seed, attention="none" if walks_on else None)
         found += [
             Job(part, suite, row["number"], row.get("group", ""), options)
-            for row in result["rows"]
+            for row in rows_of(result)
             if row.get("contacts_moving")
         ]
     return found

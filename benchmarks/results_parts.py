@@ -117,10 +117,10 @@ def parts() -> list[Part]:
         bench("random", 8, "--missions", "200"),
         bench("physics", 4),
         bench("robots", 9),
-        Part("contact_causes", 4, ("benchmarks/contact_causes.py",)),
         paper("clutter", 35),
         Part("scoreboard", 30, ("benchmarks/scoreboard.py",)),
         paper("table3", 80),
+        Part("contact_causes", 4, ("benchmarks/contact_causes.py",)),
         paper("ladder", 50),
         paper("ablation", 45, "--worlds", "50"),
     ]

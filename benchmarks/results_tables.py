@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from statistics import fmean
 from typing import Any
 
-from contact_causes import CAUSES, PARTS
+from contact_causes import CAUSES, PARTS, rows_of
 from results_parts import INDIFFERENT
 from results_targets import contacts_of, counted, with_interval
 from scoreboard_page import beside
@@ -237,7 +237,7 @@ def causes_table(found: Found) -> str:
     hit = table(("who was hit", "all", *(f"`{part}`" for part in parts)), lines)
     struck = []
     for part in (part for part in PARTS if part in found):
-        which = [str(row["number"]) for row in found[part]["rows"] if row["contacts_resting"]]
+        which = [str(row["number"]) for row in rows_of(found[part]) if row["contacts_resting"]]
         struck += [(f"`{part}`", str(len(which)), ", ".join(which))] if which else []
     resting = table(("walked into while it stood", "all", "missions"), struck)
     return f"{hit}\n\n{resting}"

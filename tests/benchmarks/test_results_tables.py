@@ -273,10 +273,12 @@ def test_the_times_of_navgrounds_behaviors():
 def test_contacts_while_moving_are_counted_by_cause():
     hit = [("people_late", 5, "slowed"), ("people_late", 16, "hidden"), ("dynabarn", 9, "hidden")]
     rows = [{"part": part, "number": number, "cause": cause} for part, number, cause in hit]
+    arms = {"table3-default": [row(7, resting=1)], "table3-paper": [row(8, resting=1)]}
     parts = {"contact_causes": {"rows": rows}, "office": {"rows": [row(3, resting=1), row(4)]}}
+    parts["table3"] = {"rows": arms}
     head, _, *rest = lines(tables.causes_table(parts))
     rest, resting = rest[: len(tables.CAUSES)], rest[len(tables.CAUSES) :]
     assert head == "| who was hit | all | `people_late` | `dynabarn` |"
     assert "| was hidden until the robot could not stop any more | 2 | 16 | 9 |" in rest
-    assert resting[-1] == "| `office` | 1 | 3 |"
+    assert resting[-2:] == ["| `office` | 1 | 3 |", "| `table3` | 1 | 7 |"]
     assert sum(int(line.split(" | ")[1]) for line in rest) == len(hit)
