@@ -176,7 +176,7 @@ def readme_table(found: Found) -> str:
     others = {n.removeprefix(prefix): of for n, of in found.items() if n.startswith(prefix)}
     lines.append(("indifferent people (1)", ours(found[INDIFFERENT]), others_in_words(others)))
     crowd, orca, ground = found["crowdnav"], found["crowdnav_orca"], found["navground"]
-    words = f"ORCA {ours(orca)}, {orca['mean_time']:.1f} s; in print SARL 0.99, 10.6 s"
+    words = f"ORCA {ours(orca)}, {orca['mean_time']:.1f} s; in print OM-SARL 1.00, 10.5 s"
     title = "crowdnav's circle, the published cases (2)"
     lines.append((title, f"{ours(crowd)}, {crowd['mean_time']:.1f} s", words))
     title = "navground, one agent among others (3)"
