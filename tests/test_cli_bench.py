@@ -71,6 +71,14 @@ def test_a_mission_is_run_kept_and_replayed(
         (["random", "--quick", "--seed", "10000"], "--seed 10000 is a report seed"),
         (["all", "--quick", "--seed", "12345"], "--seed 12345 is a report seed"),
         (["all", "--set", "horizon=2"], "horizon"),
+        (["paper", "--data", "nowhere"], "--data has no effect: the suite paper reads no data"),
+        (["paper", "--controller", ""], "unknown controller ''"),
+        (
+            ["compare", "file", "file", "--missions", "3"],
+            "--missions has no effect with `bench comp",
+        ),
+        (["compare", "file", "file", "--replay", "2"], "--replay has no effect"),
+        (["compare", "file", "file", "--quick"], "--quick has no effect"),
         (["compare", "a.json"], "two results"),
         (["compare", "a.json", "b.json"], "a.json: there is no such file"),
         (["compare", "file", "file"], "file: the file is empty"),
@@ -87,6 +95,21 @@ def test_bad_arguments(
     (tmp_path / "file").touch()
     assert said in refused(run(capsys, "bench", *words))
     assert {path.name for path in tmp_path.iterdir()} <= {"file", "out"}
+
+
+def test_a_replay_that_fails_and_a_bench_without_a_mission_leave_older_files(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.syspath_prepend(tmp_path)
+    for name in ("episode.npz", "good.json"):
+        (tmp_path / name).write_text("older")
+    (tmp_path / "broken.py").write_text("def make(*given):\n    raise ValueError('broken')\n")
+    words = ["bench", "office", "--replay", 0, "--out", tmp_path, "--controller"]
+    assert "ValueError: broken" in refused(run(capsys, *words, "broken:make"))
+    words = ["bench", "paper", "--select", "5:3", "--json-out", tmp_path / "good.json"]
+    assert "--select 5:3 names no mission of the suite paper" in refused(run(capsys, *words))
+    for name in ("episode.npz", "good.json"):
+        assert (tmp_path / name).read_text() == "older"
 
 
 @pytest.mark.parametrize(
@@ -126,6 +149,10 @@ def test_compare(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     assert finite(file.read_text())["suites"]["small"]["gained"] == list(range(6))
     status, out, _ = run(capsys, "bench", "compare", first, first, "--json-out", "-")
     assert finite(out)["suites"]["small"]["changed"] == []
+    before = first.read_bytes()
+    words = ["bench", "compare", first, second, "--json-out", first]
+    assert "that is what is read here" in refused(run(capsys, *words))
+    assert first.read_bytes() == before
     second.write_text(small_result(["arrived"] * 5))
     assert "only the first file has 5" in refused(run(capsys, "bench", "compare", first, second))
 

@@ -71,6 +71,11 @@ SAID = [
     ("bench paper --missions 0", "too small"),
     ("bench paper --missions 1.5", "1.5"),
     ("bench paper --seed -1", "negative"),
+    ("bench paper --missions 1e3", "'1e3': expected a whole number, 1 or more"),
+    ("bench paper --seed x", "'x': expected a whole number, 0 or more"),
+    ("bench paper --replay x", "'x': expected a mission's number N, or N:R"),
+    ("play --port x", "'x': expected 0 to 65535"),
+    ("plan room.txt --start x 1 --goal 2 2", "'x': expected a number"),
     ("bench barn", "DYNASTAR_DATA"),
     ("bench barn --data folder", "has no worlds.tar.xz"),
     ("bench compare a.json", "compare"),
@@ -79,6 +84,7 @@ SAID = [
     ("run drive.toml --seed one", "one"),
     ("demo offce", "did you mean 'office'?"),
     ("demo --copy folder/../room.txt", "room.txt"),
+    ("paper figures --out room.txt", "that is a file; name a folder"),
     ("", "COMMAND"),
     ("--bad", "COMMAND"),
 ]
@@ -116,6 +122,22 @@ def test_odd_words_in_any_place_end_in_one_sentence(
         err = refused(run(capsys, *line))
         assert "Traceback" not in err
         assert len(err) < 6000
+
+
+class Full:
+    """A stream on a full disk."""
+
+    encoding = "utf-8"
+
+    def write(self, text: str) -> int:
+        raise OSError(28, "No space left on device")
+
+
+def test_bad_input_has_its_status_also_where_it_cannot_be_said(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("sys.stderr", Full())
+    assert main(["info", "nope.yaml"]) == 2
 
 
 def test_info_of_map_scenario_and_episode(capsys: pytest.CaptureFixture[str], folder: Path) -> None:

@@ -25,3 +25,21 @@ def test_the_demo_offers_its_replay_at_a_terminal_only(
     assert main(["demo", "--out", str(tmp_path)]) == 1
     assert (told in capsys.readouterr().err) == terminal
     assert shown == ([(tmp_path / "report.html").as_uri()] if opened else [])
+
+
+def test_a_copy_that_fails_is_one_line_and_can_be_tried_again(tmp_path, monkeypatch, capsys):
+    source, target = tmp_path / "source", tmp_path / "mine"
+    (source / "office").mkdir(parents=True)
+    (source / "first.py").touch()
+    for name in ("a.toml", "b.toml"):
+        (source / "office" / name).symlink_to("nowhere")  # cannot be copied
+    monkeypatch.setattr("dynastar.io.examples.examples_folder", lambda: source)
+    assert main(["demo", "--copy", str(target)]) == 2
+    (said,) = capsys.readouterr().err.splitlines()
+    assert f"--copy {target}: " in said
+    assert (said.count(".toml"), "No such file" in said) == (1, True)
+    assert list(target.iterdir()) == []
+    for file in (source / "office").iterdir():
+        file.unlink()
+    assert main(["demo", "--copy", str(target)]) == 0
+    assert sorted(file.name for file in target.iterdir()) == ["first.py", "office"]

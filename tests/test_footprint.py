@@ -30,3 +30,8 @@ def test_a_disc_is_as_wide_as_its_radius_says():
 def test_a_radius_that_is_no_length_is_refused(radius):
     with pytest.raises(InputError, match="radius"):
         Footprint.disc(radius)
+
+
+def test_a_polygon_beyond_all_robots_is_refused():
+    with pytest.raises(InputError, match="beyond 1e\\+06 m"):
+        Footprint.polygon([(1e300, 1e300), (-1e300, 1e300), (0.0, -1e300)])

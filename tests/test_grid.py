@@ -186,3 +186,23 @@ def test_refining_keeps_what_is_where(size, factor, frame, data):
     assert fine.keepout[fine_cell] == (grid.values[coarse_cell] > 0)
     with pytest.raises(MapError, match="refined by 0"):
         grid.refined(0)
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: OccupancyGrid([[1, 2], [3]]), r"a grid is \[\[1, 2\], \[3\]\]: expected numbers"),
+        (lambda: OccupancyGrid.from_occupied([[1, 2], [3]]), "a grid is"),
+        (lambda: OccupancyGrid([[0, 0]], 10**400), "a grid's frame is 10.*: expected finite"),
+        (lambda: OccupancyGrid([[0, 0]], "0.05"), "a grid's frame is '0.05'"),
+        (lambda: OccupancyGrid([[0, 0]], GridFrame("0.05")), "a grid's frame is GridFrame"),
+        (lambda: OccupancyGrid.from_occupied([[0, 0]], "0.05"), "a grid's frame is GridFrame"),
+        (lambda: OccupancyGrid([[0, 0]], keepout=[[0], [0, 1]]), "keepout is"),
+        (lambda: OccupancyGrid.from_text([1, 2]), "line 1 of a drawn map is 1: expected a string"),
+        (lambda: empty(2, 2).refined(1.5), "refined by 1.5: expected a whole number"),
+        (lambda: empty(2, 2).numbered(1.5), "a cell's number is 1.5: expected a whole number"),
+    ],
+)
+def test_a_wrong_type_is_refused(make, words):
+    with pytest.raises(MapError, match=words):
+        make()

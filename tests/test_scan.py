@@ -3,6 +3,7 @@ import math
 import numpy as np
 import pytest
 
+from dynastar.errors import InputError
 from dynastar.geometry import Pose2D
 from dynastar.scan import LaserScan, as_scans
 
@@ -57,6 +58,24 @@ def test_a_scan_that_cannot_be_used_says_why(changes, words):
     fields = {"angle_min": 0.0, "range_min": 0.1, "range_max": 10.0} | changes
     fault = LaserScan(stamp=0.0, ranges=np.ones(9), angle_increment=0.1, **fields).fault()
     assert (fault is None) if words is None else words in fault
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"stamp": "now"}, "stamp of a scan: got 'now'"),
+        ({"mount": ("left", 0.0)}, "mount of a scan"),
+        ({"ranges": ["near", "far"]}, "ranges of a scan"),
+        ({"ranges": np.ones((9, 2))}, r"got the shape \(9, 2\), expected \(n,\)"),
+        ({"ranges": 1.0}, r"got the shape \(\), expected \(n,\)"),
+        ({"frame": ["front"]}, "frame of a scan"),
+        ({"frame": None}, "frame of a scan"),
+    ],
+)
+def test_a_scan_that_is_none_is_refused_when_it_is_made(changes, words):
+    fields = {"stamp": 0.0, "ranges": np.ones(9), "angle_min": 0.0, "angle_increment": 0.1}
+    with pytest.raises(InputError, match=words):
+        LaserScan(**fields | {"range_min": 0.1, "range_max": 10.0} | changes)
 
 
 def test_scans_are_those_of_any_sequence_and_the_rest_is_one_that_is_wrong():

@@ -14,6 +14,7 @@ from dynastar.config import shown
 from dynastar.errors import ConfigError, DynastarWarning
 
 LARGE = 5.0  # m, the radius above which a footprint is perhaps not in metres
+FARTHEST = 1e6  # m, a coordinate of a polygon
 PIECES = 4  # that a polygon is cut into for its covering discs
 
 
@@ -63,8 +64,11 @@ class Footprint:
             )
         if points.ndim != 2 or points.shape[0] < 3 or points.shape[1] != 2:
             raise ConfigError(f"a footprint polygon has shape {points.shape}: expected (n >= 3, 2)")
-        if not np.isfinite(points).all():
-            raise ConfigError("a footprint polygon has a vertex that is not finite")
+        if not (np.abs(points) <= FARTHEST).all():
+            raise ConfigError(
+                f"a footprint polygon has a vertex that is not finite, or beyond {FARTHEST:g} m: expected "
+                "metres from the centre of rotation"
+            )
         points = _corners(points)
         edges = np.roll(points, -1, axis=0) - points
         turns = _cross(edges, np.roll(edges, -1, axis=0))

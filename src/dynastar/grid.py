@@ -3,13 +3,13 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from numbers import Real
-from typing import TYPE_CHECKING, Literal, NamedTuple, TypeVar, get_args
+from numbers import Integral, Real
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar, get_args
 
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.config import summary
+from dynastar.config import shown, summary
 from dynastar.errors import ConfigError, MapError, OutOfMap
 from dynastar.extras import plotter
 from dynastar.geometry import length, place
@@ -97,30 +97,24 @@ class OccupancyGrid:
         keepout: npt.ArrayLike | None = None,
         speed_limit: npt.ArrayLike | None = None,
     ) -> None:
-        values = np.asarray(values)
+        values = _array(values, "a grid")
         if values.ndim != 2 or 0 in values.shape:
             raise MapError(f"a grid has shape {values.shape}: expected (rows, columns), both > 0")
         if values.dtype == np.bool_:
             values = np.where(values, OCCUPIED, FREE)
         if not np.issubdtype(values.dtype, np.integer) or values.min() < -1 or values.max() > 100:
             raise MapError("a grid's values have to be integers from -1 to 100, or booleans")
-        if isinstance(frame, Real) and not isinstance(frame, bool):
-            frame = GridFrame(float(frame))
-        if not isinstance(frame, GridFrame):
-            raise MapError(
-                f"a grid's frame is {frame!r:.80}: expected a GridFrame, or the side of a "
-                "cell in metres"
-            )
-        if not (frame.resolution > 0 and all(map(math.isfinite, frame))):
-            raise MapError(f"a grid's frame is {frame}: expected a resolution > 0, all finite")
+        frame = _framed(frame)
         object.__setattr__(self, "values", _readonly(values, np.int8))
         object.__setattr__(self, "frame", frame)
         masks = ("keepout", keepout, np.bool_), ("speed_limit", speed_limit, np.float32)
         for name, mask, dtype in masks:
-            if mask is not None and np.shape(mask) != values.shape:
-                raise MapError(
-                    f"{name} has shape {np.shape(mask)}: expected the grid's {values.shape}"
-                )
+            if mask is not None:
+                mask = _array(mask, name, dtype)
+                if mask.shape != values.shape:
+                    raise MapError(
+                        f"{name} has shape {mask.shape}: expected the grid's {values.shape}"
+                    )
             object.__setattr__(self, name, None if mask is None else _readonly(mask, dtype))
         if self.speed_limit is not None and not (self.speed_limit > 0).all():
             raise MapError("a speed limit has to be > 0 m/s; use keepout where nothing may drive")
@@ -148,7 +142,7 @@ class OccupancyGrid:
         occupied: npt.ArrayLike, resolution: float = 1.0, x: float = 0.0, y: float = 0.0
     ) -> "OccupancyGrid":
         """A grid without unknown cells from a [rows, columns] array that is true where occupied."""
-        return OccupancyGrid(np.asarray(occupied, dtype=bool), GridFrame(resolution, x, y))
+        return OccupancyGrid(_array(occupied, "a grid", np.bool_), GridFrame(resolution, x, y))
 
     @staticmethod
     def from_text(
@@ -162,6 +156,8 @@ class OccupancyGrid:
         lines = text.strip("\n").split("\n") if isinstance(text, str) else list(text)
         legal = set("#. ?")
         for number, line in enumerate(lines, 1):
+            if not isinstance(line, str):
+                raise MapError(f"line {number} of a drawn map is {shown(line)}: expected a string")
             if not set(line) <= legal:
                 column, mark = next((c, m) for c, m in enumerate(line, 1) if m not in legal)
                 raise MapError(
@@ -236,6 +232,8 @@ class OccupancyGrid:
 
     def numbered(self, i: int) -> tuple[int, int]:
         """(row, column) of the paper's cell ``i`` (Eq. 1)."""
+        if not isinstance(i, Integral):
+            raise MapError(f"a cell's number is {shown(i)}: expected a whole number")
         if not 1 <= i <= self.rows * self.columns:
             raise OutOfMap(f"cell {i} is off the map: expected 1 to {self.rows * self.columns}")
         return self.rows - math.ceil(i / self.columns), (i - 1) % self.columns
@@ -261,8 +259,10 @@ class OccupancyGrid:
 
     def refined(self, factor: int) -> "OccupancyGrid":
         """The same map with every cell cut into ``factor`` x ``factor``."""
-        if factor < 1:
-            raise MapError(f"a grid cannot be refined by {factor}: expected a whole number from 1")
+        if not isinstance(factor, Integral) or factor < 1:
+            raise MapError(
+                f"a grid cannot be refined by {shown(factor)}: expected a whole number from 1"
+            )
         if factor == 1:
             return self
         if self.rows * self.columns * factor * factor > MAX_CELLS:
@@ -287,6 +287,31 @@ class OccupancyGrid:
             raise OutOfMap(
                 f"cell ({row}, {column}) is off the map of {self.rows} rows, {self.columns} columns"
             )
+
+
+def _array(values: Any, what: str, dtype: Any = None) -> npt.NDArray[Any]:
+    """What was given as an array; raises MapError, which calls it ``what``, where it is none."""
+    try:
+        return np.asarray(values, dtype=dtype)
+    except (OverflowError, TypeError, ValueError):
+        raise MapError(f"{what} is {shown(values)}: expected numbers [rows, columns]") from None
+
+
+def _framed(frame: Any) -> GridFrame:
+    """The frame of a grid, from itself or the side of a cell; raises MapError for another."""
+    try:
+        if isinstance(frame, Real) and not isinstance(frame, bool):
+            frame = GridFrame(float(frame))
+        if not isinstance(frame, GridFrame):
+            raise MapError(
+                f"a grid's frame is {shown(frame)}: expected a GridFrame, or the side of a "
+                "cell in metres"
+            )
+        if not (frame.resolution > 0 and all(map(math.isfinite, frame))):
+            raise MapError(f"a grid's frame is {frame}: expected a resolution > 0, all finite")
+    except (OverflowError, TypeError):
+        raise MapError(f"a grid's frame is {shown(frame)}: expected finite numbers") from None
+    return frame
 
 
 def _readonly(array: npt.ArrayLike, dtype: type[Cell]) -> npt.NDArray[Cell]:

@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.config import Field, nearest, self_checking, summary
+from dynastar.config import Field, nearest, self_checking, shown, summary
 from dynastar.errors import ConfigError, UnknownRobot
 from dynastar.footprint import Footprint, box
 from dynastar.geometry import Pose2D, Twist, wrap_angle
@@ -82,6 +82,17 @@ class Robot:
 
     def __post_init__(self) -> None:
         limits, lidar = self.limits, self.lidar
+        for what, value, kind in (
+            ("name", self.name, str),
+            ("limits", limits, Limits),
+            ("footprint", self.footprint, Footprint),
+            ("lidar", lidar, Lidar),
+        ):
+            if not isinstance(value, kind):
+                hint = ", as Footprint.disc(0.2)" if kind is Footprint else ""
+                raise ConfigError(
+                    f"a robot's {what}: got {shown(value)}, expected {kind.__name__}{hint}"
+                )
         if lidar.range_min >= lidar.range_max:
             raise ConfigError(
                 f"range_min is {lidar.range_min:g} m: expected less than range_max, {lidar.range_max:g} m"

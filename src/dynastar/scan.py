@@ -31,7 +31,7 @@ class LaserScan:
     how far a beam without a return is free. ``mount`` is the sensor's pose on the robot; ``stamp`` the
     time in seconds of the whole scan. ``frame`` names the lidar where there are several; those without a
     name are told apart by their mounts.
-    Raises InputError for what is not a number.
+    Raises InputError for what is not a number, and for ranges of another shape.
     """
 
     stamp: float
@@ -44,13 +44,20 @@ class LaserScan:
     frame: str = ""
 
     def __post_init__(self) -> None:
+        name = "ranges"
         try:
-            ranges = np.array(self.ranges, dtype=np.float32).reshape(-1)
+            ranges = np.array(self.ranges, dtype=np.float32)
             for name in NUMBERS:  # kernels would be compiled again for an int
                 object.__setattr__(self, name, float(getattr(self, name)))
-            object.__setattr__(self, "mount", Pose2D(*map(float, self.mount)))
+            name = "mount"
+            object.__setattr__(self, name, Pose2D(*map(float, self.mount)))
         except (TypeError, ValueError, OverflowError) as error:
-            raise InputError(f"a scan of {shown(self.ranges)}: {error}; expected numbers") from None
+            given = shown(getattr(self, name))
+            raise InputError(f"{name} of a scan: got {given} ({error}), expected numbers") from None
+        if ranges.ndim != 1:
+            raise InputError(f"ranges of a scan: got the shape {ranges.shape}, expected (n,)")
+        if not isinstance(self.frame, str):
+            raise InputError(f"frame of a scan: got {shown(self.frame)}, expected a name")
         ranges.flags.writeable = False
         object.__setattr__(self, "ranges", ranges)
 

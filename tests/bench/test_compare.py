@@ -167,7 +167,9 @@ def test_files_of_one_suite_and_of_all_are_read(tmp_path):
 
 @pytest.mark.parametrize(
     "text", ["{", "[]", "{}", '{"suites": {}}', '{"suite": "a", "rows": [1]}', '{"rows": [{}]}', '"x"',
-     '{"suite": "a", "rows": [{"number": 1, "outcome": "arrived", "time": "3"}]}']
+     '{"suite": "a", "rows": [{"number": 1, "outcome": "arrived", "time": "3"}]}',
+     '{"suite": "a", "rows": [{"number": 1, "outcome": "arrived", "time": 1' + 400 * "0" + "}]}",
+     '{"suite": "a", "rows": [], "settings": ' + 2000 * "[" + 2000 * "]" + "}", 100_000 * "["]
 )  # fmt: skip
 def test_files_that_are_none(tmp_path, text):
     file = tmp_path / "file.json"

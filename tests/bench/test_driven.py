@@ -82,12 +82,12 @@ def test_options_are_laid_over_the_scenario():
     assert "period" in row["reason"]
 
 
-def test_replay_gives_the_same_row_and_keeps_the_episode(result, tmp_path):
-    row, episode = replay("small", SUITE, Options(seed=2), 3, 0, tmp_path)
+def test_replay_gives_the_same_row_and_its_episode(result):
+    row, episode = replay("small", SUITE, Options(seed=2), 3, 0)
     assert untimed(row) == untimed(result["rows"][0])
     assert len(episode.commands) == row["ticks"]
     assert (episode.scenario["name"], episode.outcome) == ("small 3", "arrived")
-    repeated, _ = replay("small", SUITE, Options(), 3, 2, tmp_path)
+    repeated, _ = replay("small", SUITE, Options(), 3, 2)
     assert repeated["seed"] == 2
     assert repeated["length"] == row["length"]
 
@@ -95,9 +95,9 @@ def test_replay_gives_the_same_row_and_keeps_the_episode(result, tmp_path):
 @pytest.mark.parametrize(
     ("number", "said"), [(4, "leaves out mission 4: by rule"), (6, "no mission 6")]
 )
-def test_what_cannot_be_replayed(tmp_path, number, said):
+def test_what_cannot_be_replayed(number, said):
     with pytest.raises(InputError, match=said):
-        replay("small", SUITE, Options(), number, 0, tmp_path)
+        replay("small", SUITE, Options(), number, 0)
 
 
 def test_failures_are_saved_with_episode_and_picture(tmp_path, result):
@@ -116,8 +116,8 @@ def test_a_failure_that_cannot_be_saved_is_a_warning_and_the_row_stays(tmp_path)
     assert rows[0]["outcome"] == "timeout"
 
 
-def test_what_limits_is_summed_by_cause(tmp_path):
-    _, episode = replay("small", SUITE, Options(), 3, 0, tmp_path)
+def test_what_limits_is_summed_by_cause():
+    _, episode = replay("small", SUITE, Options(), 3, 0)
     n = 5
     few = replace(
         episode,

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from dynastar.bench.missions import Options
+from dynastar.bench.movingai import missions
 from dynastar.bench.runner import run_suite
 from dynastar.bench.suites import load_suite
 from dynastar.errors import DataError
@@ -40,6 +41,28 @@ def test_a_damaged_index_names_its_line(folder: Path) -> None:
     index.write_text(index.read_text().replace("own,a.map,4,3,0,0,0,2,2,2.5", "own,a.map,4,x"))
     with pytest.raises(DataError, match="line 3"):
         run_suite("movingai", load_suite("movingai"), Options(data=folder))
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("\u00e9,a.map\n".encode("latin-1"), "save it as UTF-8"),
+        (b"own," + b"x" * 200_000 + b"\n", "line 2: this is not CSV"),
+    ],
+)
+def test_an_index_that_is_no_csv_says_so(folder: Path, text: bytes, says: str) -> None:
+    (folder / "verified_scenarios.csv").write_bytes(INDEX.encode() + text)
+    with pytest.raises(DataError, match=says):
+        list(missions(Options(data=folder)))
+
+
+def test_an_index_may_have_a_byte_order_mark_and_lacks_no_column(folder: Path) -> None:
+    index = folder / "verified_scenarios.csv"
+    index.write_bytes(b"\xef\xbb\xbf" + index.read_bytes())
+    assert len(list(missions(Options(data=folder)))) == 4
+    index.write_text(index.read_text("utf-8-sig").replace("match", "fits"))
+    with pytest.raises(DataError, match="column 'match' is missing"):
+        list(missions(Options(data=folder)))
 
 
 @pytest.mark.data

@@ -47,6 +47,36 @@ def test_a_line_that_was_cut_off_is_made_again(tmp_path):
     assert len(lines) == 5
 
 
+def test_a_file_of_another_run_is_kept_and_taken_up_again(tmp_path, capsys):
+    file, old = tmp_path / "rows.jsonl", tmp_path / "rows.jsonl.old"
+    jobs, other = [("a", n) for n in range(4)], {**SETTINGS, "seed": 1}
+    made(file, jobs)
+    first = file.read_bytes()
+    assert made(file, jobs[:2], other) == 2
+    assert old.read_bytes() == first
+    assert capsys.readouterr().err == f"{file} was of another run: it is now {old}\n"
+    second = file.read_bytes()
+    assert made(file, jobs) == 0
+    assert (file.read_bytes(), old.read_bytes()) == (first, second)
+    file.unlink()
+    assert made(file, jobs, other) == 2
+    file.write_text("notes\n")
+    made(file, jobs)
+    assert old.read_text() == "notes\n"
+    assert {path.name for path in tmp_path.iterdir()} == {file.name, old.name}
+
+
+def test_a_line_that_is_nested_too_deeply_is_made_again(tmp_path):
+    file = tmp_path / "rows.jsonl"
+    jobs = [("a", n) for n in range(2)]
+    made(file, jobs)
+    lines = file.read_text().splitlines(keepends=True)
+    for depth in (990, 100_000):
+        deep = depth * "[" + depth * "]"
+        file.write_text(lines[0] + lines[1] + f'{{"job": ["a", 1], "row": {{"x": {deep}}}}}\n')
+        assert made(file, jobs) == 1
+
+
 def test_rows_that_are_dropped_are_made_again(tmp_path):
     file = tmp_path / "rows.jsonl"
     jobs = [("a", n) for n in range(4)]

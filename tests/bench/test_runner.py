@@ -1,5 +1,6 @@
 """The frame of the suites, on a suite made up here."""
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -7,6 +8,7 @@ import pytest
 
 from dynastar.bench.missions import Mission, Options
 from dynastar.bench.runner import run_suite
+from dynastar.errors import InputError
 from made_up_suite import suite
 
 
@@ -38,6 +40,38 @@ def test_a_run_goes_on_where_it_was_cut_off(tmp_path: Path) -> None:
         before = len(flown)
         run_suite("made up", made, other, keep=keep)
         assert len(flown) == before + 5
+
+
+def test_kept_rows_that_are_damaged_are_run_again_in_any_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("DYNASTAR_DATA", raising=False)
+    keep, made, flown = tmp_path / "rows.jsonl", suite(lambda: range(3)), []
+    whole = run_suite("made up", made, Options(), keep=keep)["rows"]
+    settings, *rows = map(json.loads, keep.read_text().splitlines())
+    del rows[0]["row"]["cpu_s"], rows[1]["row"]["outcome"]
+    keep.write_text("".join(json.dumps(line) + "\n" for line in (settings, *rows)))
+    run_mission = made.run_mission
+    made.run_mission = lambda *asked: flown.append(asked[0].number) or run_mission(*asked)
+    monkeypatch.chdir(tmp_path)
+    assert run_suite("made up", made, Options(), keep=keep)["rows"] == whole
+    assert flown == [0, 1]
+
+
+@pytest.mark.parametrize(
+    ("made", "options", "said"),
+    [
+        (suite(lambda: [1]), Options(select="5:3"), "--select 5:3 names no mission of the suite x"),
+        (suite(list), Options(data=Path("here")), "the suite x: here holds no mission"),
+        (suite(lambda: [1], left_out={1}), Options(), "leaves out every mission .*: by rule"),
+    ],
+)
+def test_a_run_without_a_mission_is_refused(
+    made: Any, options: Options, said: str, tmp_path: Path
+) -> None:
+    with pytest.raises(InputError, match=said):
+        run_suite("x", made, options, keep=tmp_path / "rows.jsonl")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_result_names_the_attention_of_its_walkers() -> None:

@@ -13,6 +13,8 @@ def test_columns_come_in_the_order_asked(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text("\ufeffb,other,a\n1,x,2\n3,y,4.5\n", encoding="utf-8")
     assert np.array_equal(read_columns(path, ("a", "b")), [[2.0, 1.0], [4.5, 3.0]])
+    path.write_bytes(b"a,b\r1,2\r3,4\r")
+    assert np.array_equal(read_columns(path, ("a", "b")), [[1.0, 2.0], [3.0, 4.0]])
 
 
 @pytest.mark.parametrize(
@@ -22,6 +24,7 @@ def test_columns_come_in_the_order_asked(tmp_path: Path) -> None:
         ("a,b\n1,2\n1\n", "line 3"),
         ("a,b\n1,inf\n", "line 2"),
         ("a,b\n1,word\n", "line 2"),
+        (f"a,b\n1,{'2' * 200_000}\n", "line 2: this is not CSV"),
     ],
 )
 def test_damaged_columns_name_the_line(tmp_path: Path, text: str, says: str) -> None:

@@ -5,6 +5,7 @@ import dataclasses
 import io
 import json
 import math
+import os
 import tracemalloc
 import zipfile
 from typing import Any
@@ -199,6 +200,14 @@ def test_json_holds_no_nan_and_is_written_whole(tmp_path):
     with pytest.raises(TypeError, match="cannot hold a object"):
         write_json(path, object())
     assert [p.name for p in path.parent.iterdir()] == ["a.json"]
+
+
+def test_json_holds_a_file_name_that_is_not_utf_8(tmp_path):
+    name = os.fsdecode(b"q\xff.toml")
+    write_json(tmp_path / "a.json", {"name": name, "ä": "ö"})
+    text = (tmp_path / "a.json").read_text(encoding="utf-8")
+    assert json.loads(text) == {"name": name, "ä": "ö"}
+    assert "ö" in text
 
 
 def test_what_fails_while_it_is_written_leaves_the_old_file(tmp_path):

@@ -78,6 +78,8 @@ def test_an_image_stands_for_the_yaml_that_names_it(tmp_path, load):
     save_map(GRID, tmp_path / "a.pgm")
     (tmp_path / "a.yaml").rename(tmp_path / "home.yaml")
     (tmp_path / "goals.yaml").write_text("dock: [1.0, 2.0]\n")
+    (tmp_path / "broken.yaml").write_text("image: b.pgm\nresolution: [\n")
+    (tmp_path / "half.yaml").write_text("image: b.pgm\nresolution: 0.1\n")
     assert (load(tmp_path / "a.pgm").values == GRID.values).all()
     (tmp_path / "a.yaml").write_text(
         (tmp_path / "home.yaml").read_text().replace("a.pgm", "old.pgm")
@@ -169,7 +171,7 @@ def test_no_damage_to_an_array_gives_anything_but_a_map_or_a_map_error(tmp_path)
     ("text", "message"),
     [
         (b"#.x\n", "line 1, column 3 of a drawn map is 'x'"),
-        (b"\xff\xfe#.", "not a text file"),
+        (b"\xff\xfe#.", "not UTF-8 text: save it as UTF-8"),
         (b"\n\n", "both > 0"),
         (b"", "empty"),
         (b"." * 20000 + b"\n." * 20000, "more than"),

@@ -130,7 +130,7 @@ def test_scenarios_are_read_row_by_row(tmp_path):
         ("version 1\n" + ROW.replace("3.41421356", "nan"), "line 2: 'length' is nan"),
         ("version 1\n" + ROW.replace("\t3\t1\t", "\t4\t1\t"), r"goal \(4, 1\) is off its 4 x 3"),
         ("version 1\n" + ROW.replace("\t0\t0\t", "\t-1\t0\t"), "'start_x' is -1"),
-        ("\x00\xff", "not a text|first line"),
+        ("\x00\xff", "not UTF-8 text|first line"),
     ],
 )
 def test_wrong_scenarios_say_where(tmp_path, text, message):

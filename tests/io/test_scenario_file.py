@@ -171,6 +171,10 @@ def test_a_whole_scenario_is_read_key_by_key(tmp_path):
         ("[[movers]]\nradius = 0.3\nfrom = [1]\nvelocity = [1, 1]", "'movers.0..from' has 1"),
         ("[[movers]]\nradius = 0.3\nform = [1, 1]\nvelocity = [1, 1]", "did you mean 'from'"),
         ("[[movers]]\nradius = 0.3\nfrom = [1, 1]\nvelocity = [0, 0]", "velocity' is zero"),
+        (
+            "[[movers]]\nradius = 0.3\nfrom_ = [1, 1]\nvelocity = [1, 0]",
+            "unknown key 'movers.0..from_'",
+        ),
         ("[[movers]]\nradius = 0.3\ntrack = [[1, 0, 0], [1, 1, 1]]", "times rise"),
         ("[[movers]]\nradius = 0.3\ntrack = [[1, 0, 0]]", "one row only"),
         ("[[movers]]\nradius = 0.3\ntrack = []", "times rise"),
@@ -272,7 +276,7 @@ def test_no_value_of_any_key_gives_anything_but_a_scenario_or_an_input_error(tmp
 
 
 def test_a_scenario_that_is_no_text_file(tmp_path):
-    for content, message in ((b"\xff\xfe", "not a text file"), (b"", "empty")):
+    for content, message in ((b"\xff\xfe", "not UTF-8 text: save it as UTF-8"), (b"", "empty")):
         (tmp_path / "a.toml").write_bytes(content)
         with pytest.raises(ScenarioError, match=message):
             load_scenario(tmp_path / "a.toml")
@@ -280,6 +284,11 @@ def test_a_scenario_that_is_no_text_file(tmp_path):
         load_scenario(tmp_path)
     with pytest.raises(ScenarioError, match="no such file"):
         load_scenario(tmp_path / "none.toml")
+
+
+def test_a_scenario_may_have_a_byte_order_mark(tmp_path):
+    (tmp_path / "a.toml").write_text(SMALL, encoding="utf-8-sig")
+    assert load_scenario(tmp_path / "a.toml").goals == (Goal(4.5, 0.5),)
 
 
 def test_a_map_may_lie_in_the_data_folder(tmp_path, monkeypatch):

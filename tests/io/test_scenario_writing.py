@@ -110,6 +110,11 @@ def test_what_hardware_does_comes_back(tmp_path):
     same(scenario, io.load_scenario(io.save_scenario(scenario, tmp_path)))
 
 
+def test_a_name_that_is_not_utf_8_is_written_with_question_marks(tmp_path):
+    scenario = replace(io.load_scenario(SCENES["u_trap"]), name="q\udcff")
+    assert io.load_scenario(io.save_scenario(scenario, tmp_path)).name == "q?"
+
+
 def test_what_no_file_can_hold_is_refused_and_nothing_is_written(tmp_path):
     made = io.load_scenario(SCENES["u_trap"])
     somebody = Pedestrian(0.2, 1.0, (3.0, 3.0), np.array([[3.0, 3.0], [5.0, 3.0]]))

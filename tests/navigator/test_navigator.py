@@ -117,6 +117,24 @@ def test_another_map_under_way_is_planned_on():
     drive.until("arrived")
 
 
+@pytest.mark.parametrize(
+    "grid", [OccupancyGrid(np.zeros((80, 80), np.int8), 100.0), np.zeros((60, 80), bool)]
+)
+def test_a_map_that_is_refused_changes_nothing(grid):
+    drive = under_way()
+    before = repr(drive.navigator)
+    with pytest.raises(InputError):
+        drive.navigator.set_map(grid)
+    assert repr(drive.navigator) == before
+    drive.navigator._refine()  # takes the map again
+    drive.until("arrived")
+
+
+def test_the_name_of_a_planner_is_no_planner():
+    with pytest.raises(InputError, match=r"a planner: got 'astar'.*PlannerConfig"):
+        Navigator(room(), ROUND, planner="astar")
+
+
 def test_another_map_revives_who_found_no_way_on_the_last():
     drive = Drive(WALLED)
     drive.navigator.set_goal(Goal(6.5, 3.0))

@@ -292,6 +292,18 @@ def test_a_planner_that_fails_stops_the_robot_and_raises_nothing(answer, words, 
     assert re.search(words, str(drive.status.error))
 
 
+def test_a_robot_without_a_path_says_which_planner_failed(caplog):
+    caplog.set_level(logging.CRITICAL)
+    planner = Straight()
+    drive = drive_by(planner, true=room(8.0, 6.0, (5.0, 1.0, 5.5, 2.0)))
+    drive.tick()
+    planner.answer = RuntimeError("out of order")
+    drive.navigator.route.drop()
+    drive.tick()
+    assert drive.status.state == "waiting"
+    assert re.search("no path for now: .*Straight failed.*out of order", drive.status.reason)
+
+
 def test_another_map_keeps_the_path_that_was_given():
     path = [(1.5, 1.5), (3.0, 4.5), (6.5, 1.5)]
     drive = Drive(room(), pose=(1.5, 1.5, 0.0), true=room(8.0, 6.0, (4.0, 0.0, 4.3, 6.0)))

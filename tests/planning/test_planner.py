@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from dynastar.errors import ConfigError, GoalOccupied, NoPath, OutOfMap, StartOccupied
+from dynastar.errors import ConfigError, GoalOccupied, InputError, NoPath, OutOfMap, StartOccupied
 from dynastar.grid import GridFrame, OccupancyGrid
 from dynastar.planning import ALGORITHMS, GridPlanner, PlannerConfig, SearchGrid, plan
 from naive import clearance
@@ -174,6 +174,12 @@ def test_where_a_path_is_blocked():
     assert planner.path_blocked_at(made.path.points) is None
     planner.mark(6, 9, np.ones((2, 1), dtype=bool))
     assert 0.0 < planner.path_blocked_at(made.path.points) < made.path.length
+    for points in ([(0.2, 0.2), (math.nan, 0.2)], [(0.2, math.inf)], [(0.2, 0.2, 0.0)] * 2):
+        with pytest.raises(InputError, match="a path"):
+            planner.path_blocked_at(points)
+    for radius in (math.nan, -1.0, "0.1"):
+        with pytest.raises(ConfigError, match="expected 0 to 100 m"):
+            planner.path_blocked_at(line, radius=radius)
 
 
 def test_at_any_angle_the_path_is_no_longer_than_the_taut_one():

@@ -407,3 +407,9 @@ def test_a_robot_of_forces_and_masses_stops_as_the_file_says(number, loaded, tmp
         driven.step(Twist(0.0, 0.0), 0.05)
     stop = speed * found["latency"].high + 0.5 * speed**2 / found["v_brake"].low
     assert 0.45 * stop < driven.pose.x - began <= stop
+
+
+def test_a_recording_with_too_few_messages_says_of_which(tmp_path):
+    record(tmp_path / "bag", PLAIN, [(0.0, 0.0, 0.05)])
+    with pytest.raises(DataError, match=r"fewer than two messages of 'scan' that can be used$"):
+        read_drive(tmp_path / "bag")

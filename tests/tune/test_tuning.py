@@ -14,7 +14,7 @@ from dynastar import io
 from dynastar.bench.missions import Mission, Options
 from dynastar.bench.suites import SUITES
 from dynastar.cli import main
-from dynastar.errors import InputError
+from dynastar.errors import DataError, InputError
 from dynastar.navigator import NavigatorConfig, configured
 from dynastar.robot import Robot
 from dynastar.tune.search import Plan
@@ -105,10 +105,20 @@ def test_one_search_at_a_time_is_in_a_folder(tmp_path):
             assert folder.is_dir()
 
 
-@pytest.mark.parametrize("text", ['{"asked": [], "trials": []}', '{"asked": null, "trials": []}'])
+@pytest.mark.parametrize(
+    "text",
+    [
+        '{"asked": [], "trials": []}',
+        '{"asked": null, "trials": []}',
+        '{"asked": {}, "trials": [], "spent_s": null}',
+        '{"asked": {}, "trials": [], "spent_s": "x"}',
+        '{"asked": {}, "trials": [], "spent_s": NaN}',
+        "[" * 100_000,
+    ],
+)
 def test_a_damaged_state_is_named(tmp_path, text):
     (tmp_path / "state.json").write_text(text, encoding="utf-8")
-    with pytest.raises(InputError, match="cannot be read"):
+    with pytest.raises(DataError, match="cannot be read"):
         load_state(tmp_path, {"worlds": 1})
 
 

@@ -20,8 +20,8 @@ from typing import Any
 
 from dynastar.bench.statistics import bootstrap, lost_and_gained, mcnemar, pairs_needed
 from dynastar.config import shown
-from dynastar.errors import InputError
-from dynastar.io.files import MAX_TEXT_BYTES, read_bytes
+from dynastar.errors import DataError, InputError
+from dynastar.io.files import MAX_TEXT_BYTES, jsonable, read_bytes
 
 Row = Mapping[str, Any]
 Result = Mapping[str, Any]
@@ -42,15 +42,20 @@ COUNTS = (
 # Of results that do not name a condition.
 EARLIER: Mapping[str, Any] = {"attention": "none", "legs": False}
 SHOWN = 10  # numbers in a message
+LARGEST = 1e12  # s or m in a row
 
 
 def load_result(file: str | Path) -> dict[str, Result]:
     """The results in a JSON file of ``bench SUITE`` or ``bench all``, by suite; InputError."""
     path = Path(file)
     try:
-        data = json.loads(read_bytes(path, MAX_TEXT_BYTES, InputError))
+        data = jsonable(json.loads(read_bytes(path, MAX_TEXT_BYTES, InputError)))
     except ValueError:
         raise InputError(f"{path}: this is not JSON") from None
+    except RecursionError:
+        raise DataError(
+            f"{path}: is nested too deeply; expected the --json-out of `dynastar bench`"
+        ) from None
     suites = data.get("suites", {str(data.get("suite")): data}) if isinstance(data, dict) else {}
     whole = isinstance(suites, dict) and all(
         isinstance(result, dict) and _is_rows(result.get("rows")) for result in suites.values()
@@ -208,8 +213,12 @@ def _is_row(row: Row) -> bool:
         "number" in row
         and isinstance(row.get("outcome"), str)
         and all(type(count) is int for count in counts)
-        and all(value is None or type(value) in (int, float) for value in values)
+        and all(value is None or _is_size(value) for value in values)
     )
+
+
+def _is_size(value: Any) -> bool:
+    return type(value) in (int, float) and abs(value) <= LARGEST
 
 
 def as_lines(compared: Mapping[str, Any]) -> list[str]:

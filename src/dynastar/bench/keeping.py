@@ -11,7 +11,7 @@ from dynastar.bench.selection import MOST
 from dynastar.bench.statistics import succeeded
 from dynastar.episode import Episode
 from dynastar.errors import DynastarError, InputError
-from dynastar.io.episode_file import load_episode, save_episode
+from dynastar.io.episode_file import save_episode
 
 
 @dataclass(frozen=True)
@@ -36,35 +36,21 @@ class FailureKeeper:
             warnings.warn(f"{stem} was not saved: {error}", stacklevel=1)
 
 
-@dataclass(frozen=True)
-class EpisodeKeeper:
-    """Writes the episode of a mission into ``file``."""
-
-    file: Path
-
-    def __call__(
-        self, suite: str, mission: Mission, repeat: int, episode: Episode, row: dict[str, Any]
-    ) -> None:
-        """Writes it; raises EpisodeError if that cannot be done."""
-        save_episode(episode, self.file)
-
-
 def replay(
-    name: str, suite: Suite, options: Options, number: int, repeat: int, folder: Path
+    name: str, suite: Suite, options: Options, number: int, repeat: int
 ) -> tuple[dict[str, Any], Episode]:
-    """Runs one mission again as the suite runs it; its row and its episode, kept in ``folder``.
+    """Runs one mission again as the suite runs it; its row and its episode.
 
     But for what was measured with a clock both are those of the first time. Raises InputError for a
     number that the suite does not have or leaves out, and for a mission that cannot be driven.
     """
     mission = mission_numbered(name, suite, options, number)
-    file = folder / "episode.npz"
-    file.unlink(missing_ok=True)
+    episodes: list[Episode] = []
     job = Job(suite, mission, repeat, options.controller)
-    row = run_job(options._replace(observe=EpisodeKeeper(file)), job)
-    if not file.exists():
+    row = run_job(options._replace(observe=lambda *seen: episodes.append(seen[3])), job)
+    if not episodes:
         raise InputError(f"{name} {number} has no episode: {row['outcome']}, {row['reason']}")
-    return row, load_episode(file)
+    return row, episodes[0]
 
 
 def mission_numbered(name: str, suite: Suite, options: Options, number: int) -> Mission:

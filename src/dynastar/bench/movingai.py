@@ -5,7 +5,6 @@ confirmed (match = 0), and maps that are not there, are left out. ``arrived`` me
 found the optimum.
 """
 
-import csv
 import math
 import time
 from collections.abc import Iterator
@@ -17,6 +16,7 @@ import numpy as np
 
 from dynastar.bench.missions import Mission, Options, data_folder
 from dynastar.errors import DataError, NoPath
+from dynastar.io.data_files import read_rows
 from dynastar.io.movingai import load_movingai_map
 from dynastar.planning import SearchGrid
 
@@ -26,6 +26,7 @@ QUICK_MISSIONS = 50
 COMPARABLE = "Path lengths are compared with recomputed optima; nothing is driven."
 
 INDEX = "verified_scenarios.csv"
+COLUMNS = "set", "map", "sx", "sy", "gx", "gy", "recomputed_length", "match"
 TOLERANCE = 0.005  # cells; older files round their lengths
 ALGORITHM = "astar"
 
@@ -45,16 +46,15 @@ class Query(NamedTuple):
 def missions(options: Options) -> Iterator[Mission]:
     """The rows of the index in its order; DataError for one that cannot be read."""
     index = data_folder(options, "movingai", INDEX) / INDEX
-    with open(index, newline="", encoding="utf-8") as file:
-        for number, row in enumerate(csv.DictReader(file)):
-            try:
-                sx, sy, gx, gy = (int(row[key]) for key in ("sx", "sy", "gx", "gy"))
-                confirmed = row["match"].strip() == "1"
-                expected = float(row["recomputed_length"]) if confirmed else math.nan
-                query = Query(f"{row['set']}/{row['map']}", (sx, sy), (gx, gy), expected)
-            except (KeyError, TypeError, ValueError, AttributeError) as error:
-                raise DataError(f"{index}, line {number + 2}: cannot be read ({error})") from error
-            yield Mission(number, query)
+    for number, (line, row) in enumerate(read_rows(index, COLUMNS)):
+        try:
+            sx, sy, gx, gy = (int(row[key]) for key in ("sx", "sy", "gx", "gy"))
+            confirmed = row["match"].strip() == "1"
+            expected = float(row["recomputed_length"]) if confirmed else math.nan
+            query = Query(f"{row['set']}/{row['map']}", (sx, sy), (gx, gy), expected)
+        except (TypeError, ValueError, AttributeError) as error:
+            raise DataError(f"{index}, line {line}: cannot be read ({error})") from error
+        yield Mission(number, query)
 
 
 def leave_out(mission: Mission, options: Options) -> str:

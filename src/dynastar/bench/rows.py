@@ -1,6 +1,9 @@
 """Rows of an experiment, one a job: kept as they come, and continued where a run was cut off."""
 
 import json
+import os
+import secrets
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -24,12 +27,11 @@ def collect(
     """A row for every job, in the jobs' order; those that ``file`` has are not made again.
 
     A job is anything that JSON can hold, or has a ``key`` that is. The file holds JSON by lines: the
-    settings first, then each row with its job. Other settings, or a file that is none of ours, begin
-    anew; a line that was damaged or cut off in writing is dropped.
+    settings first, then each row with its job. A file of other settings, or that is none of ours, is
+    renamed to FILE.old; a line that was damaged or cut off in writing is dropped.
     """
-    first, done = _read(file)
-    if first != jsonable(settings):
-        done = {}
+    take_up(file, settings)
+    _, done = _read(file)
     keys = [_key(job) for job in jobs]
     left = [(key, job) for key, job in zip(keys, jobs, strict=True) if key not in done]
     _write(file, settings, done)
@@ -49,6 +51,25 @@ def collect(
                 bar.set_postfix(arrived=arrived, refresh=False)
             bar.update()
     return [done[key] for key in keys]
+
+
+def take_up(file: Path, settings: dict[str, Any]) -> None:
+    """Make ``file`` that of a run with these settings: what is of another run becomes FILE.old.
+
+    If FILE.old is of this run, as after a slip in the options, it becomes ``file`` again.
+    """
+    wanted, old = jsonable(settings), file.with_name(f"{file.name}.old")
+    if _read(file)[0] == wanted:
+        return
+    back = _read(old)[0] == wanted
+    aside = old.with_name(f"{old.name}.{secrets.token_hex(4)}") if back else old
+    if file.exists() and file.stat().st_size > 0:
+        os.replace(file, aside)
+        print(f"{file} was of another run: it is now {old}", file=sys.stderr)
+    if back:
+        os.replace(old, file)
+        if aside.exists():
+            os.replace(aside, old)
 
 
 def drop_rows(
@@ -90,6 +111,6 @@ def _write(file: Path, settings: Any, done: dict[str, dict[str, Any]]) -> None:
 
 def _parsed(line: str) -> Any:
     try:
-        return json.loads(line)
-    except ValueError:  # damaged, or cut off in writing
+        return jsonable(json.loads(line))
+    except (ValueError, RecursionError):  # damaged, or cut off in writing
         return None

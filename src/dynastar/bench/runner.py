@@ -10,11 +10,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from dynastar.bench.missions import Mission, Options, Suite, row_of
-from dynastar.bench.rows import collect, drop_rows
-from dynastar.bench.selection import choose_missions
+from dynastar.bench.rows import collect, drop_rows, take_up
+from dynastar.bench.selection import ABSENT, choose_missions
 from dynastar.bench.statistics import succeeded, totals
 from dynastar.bench.suites import SUITES, load_suite
 from dynastar.bench.versions import code_version, controller_version
+from dynastar.errors import InputError
 
 
 class Job(NamedTuple):
@@ -37,8 +38,13 @@ class Job(NamedTuple):
 
 
 def jobs_of(name: str, suite: Suite, options: Options) -> tuple[list[Job], Counter[str]]:
-    """The jobs of a suite, in the missions' order, and how many missions were left out, by reason."""
+    """The jobs of a suite, in the missions' order, and how many missions were left out, by reason.
+
+    Raises InputError where there is no mission to run.
+    """
     chosen, skipped = choose_missions(suite, options)
+    if not chosen:
+        raise InputError(_no_mission(name, options, skipped))
     known = name if name in SUITES else suite
     source_of = getattr(suite, "source_of", lambda _: "")
     jobs = [
@@ -47,6 +53,19 @@ def jobs_of(name: str, suite: Suite, options: Options) -> tuple[list[Job], Count
         for repeat in range(options.repeat)
     ]
     return jobs, skipped
+
+
+def _no_mission(name: str, options: Options, skipped: Counter[str]) -> str:
+    """Why a suite has no mission to run, and what would be right."""
+    reasons = [reason for reason in skipped if reason != ABSENT]
+    if reasons:
+        return f"the suite {name} leaves out every mission that is asked for: {'; '.join(reasons)}"
+    if options.select is not None:
+        return (
+            f"--select {options.select:.80} names no mission of the suite {name}; name some it has"
+        )
+    data = options.data or os.environ.get("DYNASTAR_DATA") or "its data"
+    return f"the suite {name}: {data} holds no mission; expected one or more"
 
 
 def run_suite(
@@ -68,22 +87,30 @@ def run_jobs(
     name: str, jobs: Sequence[Job], options: Options, progress: bool, keep: Path | None
 ) -> tuple[list[dict[str, Any]], list[float]]:
     """The row of each job and the seconds of CPU time it took, in the jobs' order."""
+    data = options.data or os.environ.get("DYNASTAR_DATA")
     settings = {
         "run": name,
         **{key: getattr(options, key) for key in ("seed", "preset", "ideal", "attention", "legs")},
         "settings": options.settings,
-        "data": os.path.abspath(options.data or os.environ.get("DYNASTAR_DATA") or "."),
+        "data": os.path.abspath(data) if data else "",
         "version": code_version() + controller_version(options.controller),
     }
     work = partial(_timed, options)
     with tempfile.TemporaryDirectory() as folder:
         file = keep or Path(folder) / "rows.jsonl"
+        take_up(file, settings)
+        drop_rows(file, settings, jobs, _is_damaged)
         if options.observe is not None:  # a failure is observed only as it is driven
             observed = [job for job in jobs if job.controller == options.controller]
             drop_rows(file, settings, observed, lambda row: not succeeded(row))
         rows = collect(name, work, jobs, file, settings, options.workers, progress)
     times = [row.pop("cpu_s") for row in rows]
     return rows, times
+
+
+def _is_damaged(row: Mapping[str, Any]) -> bool:
+    """Whether a kept row lacks what every row has."""
+    return not (isinstance(row.get("outcome"), str) and isinstance(row.get("cpu_s"), int | float))
 
 
 def result_of(

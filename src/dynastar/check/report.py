@@ -36,7 +36,7 @@ def write_check(check: Check, folder: Path, title: str) -> Path:
         print(f"without pictures: {missing}", file=sys.stderr)
         pictures = []
     with written_aside(folder / PAGE) as aside:
-        aside.write_text(page(check, title, pictures), encoding="utf-8")
+        aside.write_text(page(check, title, pictures), encoding="utf-8", errors="backslashreplace")
     return folder / PAGE
 
 

@@ -11,7 +11,7 @@ import os
 import sys
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from contextlib import contextmanager, redirect_stderr, redirect_stdout, suppress
 from importlib import import_module
 from typing import Any, TextIO, cast
 
@@ -129,5 +129,6 @@ def _show(others: Callable[..., None]) -> Callable[..., None]:
 
 
 def _say(message: str, status: int) -> int:
-    print(f"dynastar: {' '.join(message.split())}", file=sys.stderr)
+    with suppress(OSError):  # stderr is full or closed: the exit status says it
+        print(f"dynastar: {' '.join(message.split())}", file=sys.stderr)
     return status

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dynastar import io
-from dynastar.bench.suites import SUITES, load_suite
+from dynastar.bench.suites import SUITES, WITHOUT_DATA, load_suite
 from dynastar.cli.arguments import ATTENTIONS, PRESETS, add_set
 from dynastar.cli.outputs import check_file, make_folder
 from dynastar.cli.parsing import count, path, refuse_unheard, replayed, seed
@@ -50,6 +50,10 @@ CHOOSING: dict[str, object] = {
 DRIVING: dict[str, object] = {
     "controller": None, "set": [], "save_failures": None, "ideal": False, "attention": None,
     "legs": False,
+}  # fmt: skip
+UNCOMPARED: dict[str, object] = CHOOSING | DRIVING | {
+    "data": None, "seed": 0, "preset": None, "workers": None, "dask": None, "replay": None, "out": None,
+    "no_gif": False,
 }  # fmt: skip
 COMMANDS = {"all": "run every suite", "compare": "compare two results"}
 
@@ -156,6 +160,9 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.suite == "all":
         return _run_all(arguments)
     choose(arguments.suite, {**SUITES, **COMMANDS}, "suite")
+    if arguments.suite in WITHOUT_DATA:
+        why = f"has no effect: the suite {arguments.suite} reads no data"
+        refuse_unheard(arguments, {"data": None}, why)
     if arguments.replay is not None:
         refuse_unheard(arguments, CHOOSING, "has no effect with --replay, which runs one mission")
         return _replay(arguments, _options(arguments))
@@ -212,7 +219,7 @@ def _run_all(arguments: argparse.Namespace) -> int:
     save(scoreboard.picture(result), folder / "all.png")
     text = "\n\n".join(map(as_text, (table(result), quality_table(result))))
     with written_aside(folder / "all.txt") as aside:
-        aside.write_text(text + "\n", encoding="utf-8")
+        aside.write_text(text + "\n", encoding="utf-8", errors="backslashreplace")
     print(as_json(result) if arguments.json_out == "-" else text)
     print(f"the table and the picture are in {folder}, all rows in {file}", file=sys.stderr)
     return 0
@@ -229,7 +236,7 @@ def _replay(arguments: argparse.Namespace, options: "Options") -> int:
     folder = make_folder("--out", arguments.out or Path("out", name))
     suite = load_suite(arguments.suite)
     prepare()
-    row, episode = replay(arguments.suite, suite, options, number, repeat, folder)
+    row, episode = replay(arguments.suite, suite, options, number, repeat)
     write_folder(folder, episode, row, gif=not arguments.no_gif)
     print(f"pictures, numbers and the episode are in {folder}", file=sys.stderr)
     if file is not None:
@@ -243,7 +250,8 @@ def _compare(arguments: argparse.Namespace) -> int:
 
     if len(arguments.files) != 2:
         raise InputError("bench compare takes two results: dynastar bench compare A.json B.json")
-    file = check_file("--json-out", arguments.json_out)
+    refuse_unheard(arguments, UNCOMPARED, "has no effect with `bench compare`, which runs nothing")
+    file = check_file("--json-out", arguments.json_out, map(Path, arguments.files))
     compared = compare(*map(load_result, arguments.files))
     if file is not None:
         io.write_json(file, compared)
@@ -259,7 +267,7 @@ def _options(arguments: argparse.Namespace) -> "Options":
     from dynastar.bench.selection import refuse_report_seed
     from dynastar.bench.settings import read_settings
 
-    controller = arguments.controller or "navigator"
+    controller = "navigator" if arguments.controller is None else arguments.controller
     controller_named(controller)
     if arguments.quick:
         refuse_report_seed(arguments.seed)

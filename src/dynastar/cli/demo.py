@@ -6,9 +6,11 @@ from pathlib import Path
 
 from dynastar.cli import run
 from dynastar.cli.arguments import add_json, add_no_gif
+from dynastar.cli.outputs import make_folder
 from dynastar.cli.parsing import path
 from dynastar.config import choose
 from dynastar.errors import InputError
+from dynastar.writing import reason_of
 
 DESCRIPTION = (
     "Drives a robot across an office, or through another of the examples that come with "
@@ -68,13 +70,26 @@ def _offer(address: str) -> None:
 
 def _copy(folder: Path) -> int:
     import shutil
+    import tempfile
 
     from dynastar.io.examples import examples_folder
 
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError(f"--copy {folder}: is there already; expected a new or an empty folder")
-    shutil.copytree(
-        examples_folder(), folder, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__")
-    )
+    make_folder("--copy", folder)
+    try:
+        with tempfile.TemporaryDirectory(prefix=".examples.", suffix=".aside", dir=folder) as aside:
+            ignored = shutil.ignore_patterns("__pycache__")
+            shutil.copytree(examples_folder(), aside, dirs_exist_ok=True, ignore=ignored)
+            for made in Path(aside).iterdir():
+                made.replace(folder / made.name)
+    except shutil.Error as errors:
+        file, _, why = errors.args[0][0]  # why: "[Errno 28] No space left on device: '...'"
+        why = why.partition("] ")[2].partition(":")[0] or why
+        raise InputError(
+            f"--copy {folder}: {Path(file).name} cannot be copied there ({why})"
+        ) from None
+    except OSError as error:
+        raise InputError(f"--copy {folder}: cannot be written ({reason_of(error)})") from None
     print(f"the examples are in {folder}", file=sys.stderr)
     return 0

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from dynastar import io
 from dynastar.cli.arguments import add_set
-from dynastar.cli.outputs import check_file
+from dynastar.cli.outputs import check_file, make_folder
 from dynastar.cli.parsing import count, path, seed
 from dynastar.cli.show import as_json
 from dynastar.errors import InputError
@@ -102,7 +102,7 @@ def execute(arguments: argparse.Namespace) -> int:
         arguments.maps,
         arguments.worlds,
         arguments.seed,
-        arguments.out or Path("out/paper"),
+        make_folder("--out", arguments.out or Path("out/paper")),
         arguments.workers or os.cpu_count() or 1,
         progress=True,
         settings=settings,

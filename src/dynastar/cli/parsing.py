@@ -71,7 +71,10 @@ def path(text: str) -> "Path":
 
 def number(text: str) -> float:
     """A finite number."""
-    value = float(text)
+    try:
+        value = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r:.80}: expected a number") from None
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(f"{text!r} is not a finite number")
     return value
@@ -87,7 +90,7 @@ def distance(text: str) -> float:
 
 def count(text: str) -> int:
     """A whole number, 1 or more."""
-    value = int(text)
+    value = _whole(text, "a whole number, 1 or more")
     if value < 1:
         raise argparse.ArgumentTypeError(f"{text!r} is too small: expected 1 or more")
     return value
@@ -95,7 +98,7 @@ def count(text: str) -> int:
 
 def seed(text: str) -> int:
     """A whole number, 0 or more."""
-    value = int(text)
+    value = _whole(text, "a whole number, 0 or more")
     if value < 0:
         raise argparse.ArgumentTypeError(f"{text!r} is negative: expected 0 or more")
     return value
@@ -103,16 +106,26 @@ def seed(text: str) -> int:
 
 def replayed(text: str) -> tuple[int, int]:
     """A mission's number N, or N:R with its repeat."""
+    if not re.fullmatch("[0-9]{1,18}(:[0-9]{0,18})?", text):
+        raise argparse.ArgumentTypeError(f"{text!r:.80}: expected a mission's number N, or N:R")
     number, _, repeat = text.partition(":")
-    return seed(number), seed(repeat or "0")
+    return int(number), int(repeat or "0")
 
 
 def port(text: str) -> int:
     """A port of TCP, or 0."""
-    value = seed(text)
-    if value > 65535:
+    value = _whole(text, "0 to 65535")
+    if not 0 <= value <= 65535:
         raise argparse.ArgumentTypeError(f"{text!r} is no port: expected 0 to 65535")
     return value
+
+
+def _whole(text: str, expected: str) -> int:
+    """A whole number; raises ArgumentTypeError with what was ``expected``."""
+    try:
+        return int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r:.80}: expected {expected}") from None
 
 
 def refuse_unheard(

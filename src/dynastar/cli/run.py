@@ -3,6 +3,7 @@
 import argparse
 import re
 import sys
+import tempfile
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +13,7 @@ from dynastar.cli.arguments import PRESETS, add_json, add_no_gif, add_set
 from dynastar.cli.outputs import check_new, make_folder
 from dynastar.cli.parsing import path, seed
 from dynastar.cli.show import as_json, as_table
-from dynastar.errors import MissingPackage
+from dynastar.errors import InputError, MissingPackage
 from dynastar.extras import require
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from dynastar.simulation import Scenario
 
 REPORT = "report.html"
+FILES = (REPORT, "figure.png", "animation.gif", "summary.json", "episode.npz", "config.json")
 
 DESCRIPTION = (
     "Drives a scenario in simulation; draws it and measures it. "
@@ -103,7 +105,25 @@ def replay_address(folder: Path) -> str:
 
 
 def write_folder(folder: Path, episode: "Episode", summary: dict[str, Any], gif: bool) -> None:
-    """Writes the summary, the configuration, the episode, its report and its pictures."""
+    """Writes the summary, the configuration, the episode, its report and its pictures.
+
+    They are written aside first, so that the folder never holds files of two runs.
+    """
+    for name in FILES:
+        if (folder / name).is_dir():
+            raise InputError(
+                f"{folder / name}: that is a folder; name another folder for the results"
+            )
+    with tempfile.TemporaryDirectory(prefix=".results.", suffix=".aside", dir=folder) as made:
+        aside = Path(made)
+        _write_files(aside, episode, summary, gif)
+        for name in FILES:
+            (folder / name).unlink(missing_ok=True)
+        for file in aside.iterdir():
+            file.replace(folder / file.name)
+
+
+def _write_files(folder: Path, episode: "Episode", summary: dict[str, Any], gif: bool) -> None:
     from dynastar.page import write_report
 
     io.write_json(folder / "summary.json", summary)

@@ -4,7 +4,7 @@ import csv
 import io
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +24,7 @@ def read_text(path: Path, limit: int = MAX_DATA_BYTES) -> str:
     try:
         return read_bytes(path, limit, DataError).decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise DataError(f"{path}: this is not a text file in UTF-8") from None
+        raise DataError(f"{path}: this is not UTF-8 text: save it as UTF-8") from None
 
 
 def read_json(path: Path) -> Any:
@@ -35,14 +35,27 @@ def read_json(path: Path) -> Any:
         raise DataError(f"{path}: this is not valid JSON ({error!s:.120})") from None
 
 
+def read_rows(path: Path, columns: Sequence[str]) -> Iterator[tuple[int, dict[str, Any]]]:
+    """The rows of a CSV file that has ``columns``, each after its line's number; raises DataError."""
+    reader = csv.DictReader(io.StringIO(read_text(path), newline=None))
+    try:
+        missing = [name for name in columns if name not in (reader.fieldnames or ())]
+        if missing:
+            raise DataError(
+                f"{path}: the column '{missing[0]}' is missing, expected {list(columns)}"
+            )
+        for row in reader:
+            yield reader.line_num, row
+    except csv.Error as error:
+        raise DataError(
+            f"{path}, line {reader.reader.line_num}: this is not CSV ({error})"
+        ) from None
+
+
 def read_columns(path: Path, columns: Sequence[str]) -> Floats:
     """Columns of a CSV file as (n, k) finite numbers, in the order asked; raises DataError."""
-    reader = csv.DictReader(io.StringIO(read_text(path)))
-    missing = [name for name in columns if name not in (reader.fieldnames or ())]
-    if missing:
-        raise DataError(f"{path}: the column '{missing[0]}' is missing, expected {list(columns)}")
     rows = []
-    for number, row in enumerate(reader, 2):
+    for number, row in read_rows(path, columns):
         try:
             values = [float(row[name]) for name in columns]
         except (TypeError, ValueError):

@@ -68,7 +68,10 @@ def jsonable(data: Any) -> Any:
 
 
 def write_json(path: str | Path, data: Any) -> None:
-    """Writes ``data`` as standard JSON: see ``jsonable``. Raises InputError if it cannot."""
+    """Writes ``data`` as standard JSON: see ``jsonable``. Raises InputError if it cannot.
+
+    Letters of file names that are not UTF-8 become escapes, which JSON reads back as they were.
+    """
     text = json.dumps(jsonable(data), indent=2, allow_nan=False, ensure_ascii=False)
     with written_aside(path) as aside:
-        aside.write_text(text + "\n", encoding="utf-8")
+        aside.write_text(text + "\n", encoding="utf-8", errors="backslashreplace")

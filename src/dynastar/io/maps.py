@@ -106,7 +106,7 @@ def _load_text(path: Path) -> OccupancyGrid:
     try:
         text = read_bytes(path, MAX_TEXT_BYTES, MapError).decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise MapError(f"{path}: this is not a text file") from None
+        raise MapError(f"{path}: this is not UTF-8 text: save it as UTF-8") from None
     lines = text.replace("\r\n", "\n").strip("\n").split("\n")
     try:
         return OccupancyGrid.from_text(lines)

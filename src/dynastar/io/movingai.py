@@ -104,9 +104,9 @@ def load_scenarios(path: str | Path) -> list[MovingAIScenario]:
     """The rows of a ``.scen`` file (version 1); raises MapError with the line that is wrong."""
     path = local_path(path, MapError)
     try:
-        lines = read_bytes(path, MAX_ROWS_BYTES, MapError).decode("utf-8").splitlines()
+        lines = read_bytes(path, MAX_ROWS_BYTES, MapError).decode("utf-8-sig").splitlines()
     except UnicodeDecodeError:
-        raise MapError(f"{path}: this is not a text file") from None
+        raise MapError(f"{path}: this is not UTF-8 text: save it as UTF-8") from None
     if lines[0].split() not in (["version", "1"], ["version", "1.0"]):
         raise MapError(f"{path}: the first line is {lines[0]!r:.60}, expected 'version 1'")
     return [_row(line, f"{path}, line {n}") for n, line in enumerate(lines[1:], 2) if line.strip()]

@@ -10,6 +10,7 @@ occ = 1 - shade, or occ = shade with ``negate``. By mode:
 """
 
 import warnings
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple
 
@@ -90,7 +91,7 @@ def _yaml_of(image: Path) -> Path:
     for table in same:
         if _names(table, image):
             return table
-    naming = [table for table in _other_tables(image, same) if _names(table, image)]
+    naming = _other_tables(image, same)
     if len(naming) == 1:
         return naming[0]
     if naming:
@@ -105,9 +106,13 @@ def _yaml_of(image: Path) -> Path:
 
 
 def _other_tables(image: Path, same: list[Path]) -> list[Path]:
-    """The other YAML files in the folder of an image that can be maps."""
-    files = [*image.parent.glob("*.yaml"), *image.parent.glob("*.yml")]
-    return [table for table in sorted(files) if table not in same and not not_a_map(table)]
+    """The other YAML files in the folder of an image that are for it; those that are broken are not."""
+    found = []
+    for table in sorted([*image.parent.glob("*.yaml"), *image.parent.glob("*.yml")]):
+        with suppress(MapError):
+            if table not in same and _names(table, image):
+                found.append(table)
+    return found
 
 
 def _names(table: Path, image: Path) -> bool:

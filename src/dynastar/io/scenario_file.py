@@ -100,12 +100,12 @@ def _read_toml(path: Path) -> dict[str, Any]:
     """The tables of a TOML file; raises ScenarioError for what is none."""
     data = read_bytes(path, MAX_TABLE_BYTES, ScenarioError)
     try:
-        text = data.decode("utf-8")
+        text = data.decode("utf-8-sig")
         if any(token.lastgroup for token in _TOKEN.finditer(text)):
             raise ValueError("a key of more than 32 parts")  # tomllib takes their square
         return tomllib.loads(text)
     except UnicodeDecodeError:
-        raise ScenarioError(f"{path}: this is not a text file") from None
+        raise ScenarioError(f"{path}: this is not UTF-8 text: save it as UTF-8") from None
     except RecursionError:
         raise ScenarioError(f"{path}: this TOML is nested too deep") from None
     except ValueError as error:

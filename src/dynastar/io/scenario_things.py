@@ -58,6 +58,8 @@ def contains(polygon: Floats, x: float, y: float) -> bool:
 def read_mover(row: Any, where: str, duration: float) -> Mover:
     """The mover of one table of movers in a run of ``duration`` seconds; raises ConfigError."""
     if isinstance(row, Mapping):
+        if "from_" in row:
+            raise ConfigError(f"unknown key '{where}.from_' (did you mean 'from'?)")
         row = {"from_" if key == "from" else key: value for key, value in row.items()}
     try:
         table = checked(MoverTable, row, where)

@@ -38,7 +38,7 @@ def save_scenario(scenario: Scenario, folder: str | Path) -> Path:
         raise ScenarioError(f"a scenario file cannot have {what}")
     folder = local_path(folder, ScenarioError)
     maps: dict[str, OccupancyGrid] = {}
-    text = tomli_w.dumps(_table(scenario, maps)).encode()
+    text = tomli_w.dumps(_table(scenario, maps)).encode(errors="replace")
     if len(text) > MAX_TABLE_BYTES:
         raise ScenarioError(
             f"the scenario file would have {len(text)} bytes, of which at most {MAX_TABLE_BYTES} are "

@@ -150,7 +150,9 @@ class Route:
         """Why there is no path; empty while there is one."""
         if self.path is not None:
             return ""
-        return str(self.error) if self.is_at_obstructed_goal else NO_PATH
+        if self.is_at_obstructed_goal:
+            return str(self.error)
+        return NO_PATH if self.error is None else f"{NO_PATH}: {self.error}"
 
     def waits_at_taken_goal(self, here: tuple[float, float]) -> bool:
         """Whether a moving obstacle is at the goal, and the robot near the end of the path to it."""

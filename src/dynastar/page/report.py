@@ -26,7 +26,7 @@ def write_report(episodes: Sequence[Episode], path: str | Path) -> None:
     """Writes ``report_html``. Raises InputError if it cannot."""
     text = report_html(episodes)
     with written_aside(path) as aside:
-        aside.write_text(text, encoding="utf-8")
+        aside.write_text(text, encoding="utf-8", errors="backslashreplace")
 
 
 def report_html(episodes: Sequence[Episode]) -> str:

@@ -2,11 +2,12 @@
 
 import math
 import time
+from numbers import Real
 
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.config import choose, summary
+from dynastar.config import choose, shown, summary
 from dynastar.errors import (
     ConfigError,
     GoalOccupied,
@@ -36,6 +37,13 @@ Point = tuple[float, float]
 MOST_RADIUS = 100.0  # m
 
 
+def as_radius(radius: float) -> float:
+    """A planning radius (m) as a float; ConfigError for one that is not valid."""
+    if isinstance(radius, Real) and 0.0 <= radius <= MOST_RADIUS:
+        return float(radius)
+    raise ConfigError(f"a planning radius is {shown(radius)} m: expected 0 to {MOST_RADIUS:g} m")
+
+
 class GridPlanner:
     """A map prepared once for many plans for a disc of ``radius`` metres.
 
@@ -58,11 +66,9 @@ class GridPlanner:
                 f"a map is of type {type(grid).__name__}: expected an OccupancyGrid, as "
                 "OccupancyGrid(array, 0.05) makes of an array with cells of 5 cm"
             )
-        if not 0.0 <= radius <= MOST_RADIUS:
-            raise ConfigError(f"a planning radius is {radius:g} m: expected 0 to {MOST_RADIUS:g} m")
+        self.radius = as_radius(radius)
         choose(config.planner, ALGORITHMS, "planner")
         self.grid = grid
-        self.radius = float(radius)
         self.config = config
         self._inflated_grid = InflatedGrid(
             grid.blocked(unknown), self.radius / grid.resolution, cell
@@ -196,14 +202,14 @@ class GridPlanner:
         """Metres along a polyline (n, 2), in metres, up to where the disc first touches something.
 
         None if the disc can follow the polyline to its end. ``radius`` (m) replaces the planner's.
+        Raises InputError for points that are not finite or of another shape, ConfigError for the radius.
         """
-        cells = self.grid.frame.points_to_grid(points)
+        radius = self.radius if radius is None else as_radius(radius)
+        path = Path(points)  # type: ignore[arg-type]
+        cells = self.grid.frame.points_to_grid(path.points)
         if len(cells) == 1:
             cells = np.repeat(cells, 2, axis=0)
-        radius_cells = (
-            self._inflated_grid.radius if radius is None else radius / self.grid.resolution
-        )
-        at = first_contact(self._inflated_grid.bytes, cells, float(radius_cells))
+        at = first_contact(self._inflated_grid.bytes, cells, radius / self.grid.resolution)
         return None if at < 0.0 else at * self.grid.resolution
 
     def _search_from(

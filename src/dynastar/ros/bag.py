@@ -5,6 +5,7 @@ import shutil
 import time
 import warnings
 from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from functools import cache
 from operator import itemgetter
 from pathlib import Path
@@ -18,6 +19,7 @@ from dynastar.extras import require
 from dynastar.paths import local_path
 from dynastar.ros.aside import AsideFolder
 from dynastar.ros.cut_bag import has_journal, read_cut
+from dynastar.writing import reason_of
 
 LAYOUT = Path(__file__).parent / "foxglove.json"
 STORED_EVERY = 10**9  # ns after which what was written in place is on the disk
@@ -81,8 +83,13 @@ class BagWriter:
         written = self.folder if self._aside is None else self._aside.written
         version = Writer.VERSION_LATEST
         self._writer = Writer(written, version=version, storage_plugin=StoragePlugin.MCAP)
-        self._writer.open()
-        shutil.copyfile(LAYOUT, written / LAYOUT.name)
+        try:
+            with self._writing():
+                self._writer.open()
+                shutil.copyfile(LAYOUT, written / LAYOUT.name)
+        except DataError:
+            self._drop()
+            raise
         self._connections: dict[str, Any] = {}
         self._last = -1
         self._stored = -STORED_EVERY, time.monotonic_ns()  # by stamps, and by the steady clock
@@ -101,7 +108,8 @@ class BagWriter:
             connection = self._writer.add_connection(topic, kind, typestore=_types())
             self._connections[topic] = connection
         self._last = max(1000 * round(1e6 * at), self._last + 1)
-        self._writer.write(connection, self._last, data)
+        with self._writing():
+            self._writer.write(connection, self._last, data)
         storage: Any = self._writer.storage
         now = self._last, time.monotonic_ns()  # stamps may stand still
         late = max(now[0] - self._stored[0], now[1] - self._stored[1]) > STORED_EVERY
@@ -112,9 +120,34 @@ class BagWriter:
 
     def close(self) -> None:
         """Ends the recording and gives it its name."""
-        self._writer.close()
+        try:
+            with self._writing():
+                self._writer.close()
+                if self._aside is not None:
+                    self._aside.keep()
+        except DataError:
+            self._drop()
+            raise
+
+    @contextmanager
+    def _writing(self) -> Iterator[None]:
+        """Written aside, what the system refuses is a DataError; in place it stays an OSError."""
+        try:
+            yield
+        except OSError as trouble:
+            if self._aside is None:
+                raise
+            raise DataError(
+                f"{self.folder}: cannot be written ({reason_of(trouble)}); name a folder with room on "
+                "its disk"
+            ) from None
+
+    def _drop(self) -> None:
+        """Deletes what was written aside."""
+        with suppress(OSError):  # it writes once more what the disk has refused
+            self._writer.abort()
         if self._aside is not None:
-            self._aside.keep()
+            self._aside.drop()
 
     def __enter__(self) -> "BagWriter":
         return self
@@ -128,8 +161,7 @@ class BagWriter:
         if kind is None or self._aside is None:
             self.close()
         else:
-            self._writer.abort()
-            self._aside.drop()
+            self._drop()
 
 
 class Recorded(NamedTuple):

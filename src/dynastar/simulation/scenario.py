@@ -1,18 +1,20 @@
 """A scenario: everything that a run depends on, as plain data."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.config import Field, counted, self_checking, shown, summary
-from dynastar.geometry import Goal
+from dynastar.config import Field, checked, choose, counted, self_checking, shown, summary
+from dynastar.errors import InputError
+from dynastar.geometry import Goal, as_goals, as_point
 from dynastar.grid import OccupancyGrid, Unknown
 from dynastar.navigator import NavigatorConfig, Preset
+from dynastar.navigator.inputs import as_robot
 from dynastar.path import ends_of
-from dynastar.robot import Robot
+from dynastar.robot import ROBOTS, Robot
 from dynastar.simulation.faults import Fault
 from dynastar.simulation.imperfections import ControlLoop, Drivetrain, LidarDriver, Odometry
 
@@ -69,6 +71,21 @@ class Pedestrian:
         return summary(self, f"disc of radius {self.radius:g} m", walks, f"from ({x:g}, {y:g}) m")
 
 
+class _Plain(NamedTuple):
+    """The values of a scenario that are cast and checked as settings."""
+
+    name: str
+    attention: Attention
+    legs: bool
+    noise: Noise
+    drive: Drivetrain
+    odometry: Odometry
+    lidar: LidarDriver
+    loop: ControlLoop
+    time_limit: Annotated[float, Field("time after which the mission is a timeout", "s", 0.0)]
+    seed: Annotated[int, Field("seed of all noise", "", 0, 2**63 - 1)]
+
+
 @dataclass(frozen=True, eq=False)
 class Scenario:
     """A mission in a world; ``grid`` is what the robot knows, ``world`` what is true (None: the same).
@@ -80,7 +97,8 @@ class Scenario:
     away, and go round it (``LateWalkers``). With ``legs`` the lidar sees the legs of movers and pedestrians
     (``Legs``); contacts are with their discs. ``crowd`` are pedestrians who react to the robot (needs the
     extra ``pedestrians``). ``navigator`` overrides settings of the preset, as nested tables. ``source`` is
-    what the scenario was read from.
+    what the scenario was read from. ``robot`` may be a name in ``ROBOTS``. Raises InputError for a part
+    of a wrong type.
     """
 
     name: str
@@ -110,6 +128,31 @@ class Scenario:
     navigator: Mapping[str, Any] = field(default_factory=dict)
     source: Mapping[str, Any] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        robot = self.robot
+        robot = choose(robot, ROBOTS, "robot") if isinstance(robot, str) else robot
+        for grid in (self.grid, self.grid if self.world is None else self.world):
+            as_robot(grid, robot, DEFAULT)
+        as_point(self.start, "the start")
+        if not isinstance(self.navigator, Mapping):
+            raise InputError(
+                f"a scenario's navigator is {shown(self.navigator)}: expected a table of settings that "
+                "replace the preset's, as {'period': 0.1}"
+            )
+        plain = checked(_Plain, {key: getattr(self, key) for key in _Plain._fields}, "Scenario")
+        rings = _parts("obstacles", self.obstacles, Iterable, "polygons")
+        for key, value in (
+            *plain._asdict().items(),
+            ("robot", robot),
+            ("start", (*self.start, None)[:3]),
+            ("goals", tuple(as_goals(self.goals))),
+            ("obstacles", tuple(map(_ring, rings))),
+            ("movers", _parts("movers", self.movers, Mover, "Mover")),
+            ("crowd", _parts("crowd", self.crowd, Pedestrian, "Pedestrian")),
+            ("faults", _parts("faults", self.faults, Fault, "Fault")),
+        ):
+            object.__setattr__(self, key, value)
+
     def __repr__(self) -> str:
         x, y, _ = self.start
         things = (self.obstacles, "obstacle"), (self.movers, "mover"), (self.crowd, "pedestrian")
@@ -124,3 +167,24 @@ class Scenario:
             counted(len(self.faults), "fault"),
             f"at most {self.time_limit:g} s",
         )
+
+
+def _parts(name: str, parts: Any, kind: type, what: str) -> tuple[Any, ...]:
+    """A scenario's parts of a kind as a tuple; raises InputError for others."""
+    found = tuple(parts) if isinstance(parts, Iterable) else (parts,)
+    if not all(isinstance(part, kind) for part in found) or not isinstance(parts, Iterable):
+        raise InputError(f"a scenario's {name} are {shown(parts)}: expected a tuple of {what}")
+    return found
+
+
+def _ring(corners: Any) -> Floats:
+    """The corners (k, 2) of an obstacle; raises InputError for what are none."""
+    try:
+        ring = np.asarray(corners, dtype=np.float64)
+    except (OverflowError, TypeError, ValueError):
+        ring = np.empty(0)
+    if ring.ndim != 2 or len(ring) < 3 or ring.shape[1] != 2 or not np.isfinite(ring).all():
+        raise InputError(
+            f"an obstacle is {shown(corners)}: expected a polygon (k >= 3, 2), finite metres"
+        )
+    return ring

@@ -87,7 +87,7 @@ def _read(bag: BagReader, shorts: Mapping[str, str]) -> Drive:
     for short in ("scan", "odom", COMMANDS):
         if len(found[short]) < 2:
             few = f"{bag.path}: fewer than two messages of '{short}' that can be used"
-            raise DataError("; ".join([few, *refusals(refused)]))
+            raise DataError("; ".join([few, *_refusals(refused)]))
     times, states = (np.array(part) for part in zip(*found["odom"], strict=True))
     apart = np.concatenate([[True], np.diff(times) > BURST])
     times, states = times[apart], states[apart]
@@ -100,8 +100,13 @@ def _read(bag: BagReader, shorts: Mapping[str, str]) -> Drive:
         np.array([time for time, _ in found["scan"]]),
         tuple(scan for _, scan in found["scan"]),
         robot,
-        refusals({topic: words for topic, words in refused.items() if words}),
+        _refusals(refused),
     )
+
+
+def _refusals(refused: Mapping[str, list[str]]) -> tuple[str, ...]:
+    """A sentence for each topic of which messages were refused."""
+    return refusals({topic: words for topic, words in refused.items() if words})
 
 
 def _command(message: Any) -> Twist | str:

@@ -1,6 +1,7 @@
 """What a search has found so far, kept in a file so that it goes on where it was stopped."""
 
 import json
+import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
@@ -8,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from dynastar.errors import InputError
+from dynastar.errors import DataError, InputError
 from dynastar.io.files import MAX_TEXT_BYTES, jsonable, read_bytes, write_json
 from dynastar.tune.objective import FAILURE, loss
 
@@ -107,7 +108,10 @@ def alone_in(folder: Path) -> Iterator[None]:
 
 
 def load_state(folder: Path, asked: Mapping[str, Any]) -> State:
-    """The state in a folder, or a new one. Raises InputError if it is of another search."""
+    """The state in a folder, or a new one.
+
+    Raises InputError if it is of another search, DataError if it cannot be read.
+    """
     file = folder / FILE
     if not file.exists():
         return State(dict(asked))
@@ -115,13 +119,15 @@ def load_state(folder: Path, asked: Mapping[str, Any]) -> State:
         table = json.loads(read_bytes(file, MAX_TEXT_BYTES, InputError))
         trials = [Trial(**one) for one in table.pop("trials")]
         state = State(trials=trials, **table)
+        spent = state.spent_s
         whole = isinstance(state.asked, dict) and all(
             isinstance(one.values, dict) and isinstance(one.rows, list) for one in trials
         )
+        whole = whole and type(spent) in (int, float) and 0.0 <= spent < math.inf
         if not whole:
             raise ValueError("expected the state of a search")
-    except (ValueError, TypeError, KeyError, AttributeError) as error:
-        raise InputError(f"{file} cannot be read ({error!s:.100}): name another --out") from None
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
+        raise DataError(f"{file} cannot be read ({error!s:.100}): name another --out") from None
     differ = [name for name, value in jsonable(asked).items() if state.asked.get(name) != value]
     if differ:
         raise InputError(

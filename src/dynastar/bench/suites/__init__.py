@@ -30,6 +30,11 @@ SUITES = {
     "scenarios": "dynastar.bench.suites.scenarios",
 }
 
+WITHOUT_DATA = (  # suites that make their missions themselves
+    *("paper", "faults", "random", "bounds", "people", "robots"),
+    *("crowdnav", "physics", "irsim", "navground"),
+)
+
 
 def load_suite(name: str) -> "Suite":
     """The suite of that name; ConfigError, with the nearest name, if there is none.
