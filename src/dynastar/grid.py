@@ -302,16 +302,14 @@ def _framed(frame: Any) -> GridFrame:
     try:
         if isinstance(frame, Real) and not isinstance(frame, bool):
             frame = GridFrame(float(frame))
-        if not isinstance(frame, GridFrame):
-            raise MapError(
-                f"a grid's frame is {shown(frame)}: expected a GridFrame, or the side of a "
-                "cell in metres"
-            )
-        if not (frame.resolution > 0 and all(map(math.isfinite, frame))):
-            raise MapError(f"a grid's frame is {frame}: expected a resolution > 0, all finite")
+        if isinstance(frame, GridFrame) and frame.resolution > 0 and all(map(math.isfinite, frame)):
+            return frame
     except (OverflowError, TypeError):
-        raise MapError(f"a grid's frame is {shown(frame)}: expected finite numbers") from None
-    return frame
+        pass
+    raise MapError(
+        f"a grid's frame is {shown(frame)}: expected a GridFrame with a resolution > 0, all finite, or "
+        "the side of a cell in metres"
+    )
 
 
 def _readonly(array: npt.ArrayLike, dtype: type[Cell]) -> npt.NDArray[Cell]:

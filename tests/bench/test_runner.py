@@ -1,5 +1,7 @@
 """The frame of the suites, on a suite made up here."""
 
+import importlib
+import inspect
 import json
 from pathlib import Path
 from typing import Any
@@ -8,6 +10,7 @@ import pytest
 
 from dynastar.bench.missions import Mission, Options
 from dynastar.bench.runner import run_suite
+from dynastar.bench.suites import SUITES, WITHOUT_DATA
 from dynastar.errors import InputError
 from made_up_suite import suite
 
@@ -92,3 +95,9 @@ def test_failures_are_rows_and_order_is_kept() -> None:
     assert failed["reason"] == "RuntimeError: unlucky"
     assert result["mean_length"] == pytest.approx(26.0)
     assert result["mean_time"] == pytest.approx(1.5)
+
+
+@pytest.mark.parametrize("name", SUITES)
+def test_a_suite_refuses_data_that_it_does_not_read(name):
+    source = inspect.getsource(importlib.import_module(SUITES[name]))
+    assert (name in WITHOUT_DATA) == ("data_folder" not in source and "options.data" not in source)

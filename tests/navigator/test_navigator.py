@@ -126,7 +126,6 @@ def test_a_map_that_is_refused_changes_nothing(grid):
     with pytest.raises(InputError):
         drive.navigator.set_map(grid)
     assert repr(drive.navigator) == before
-    drive.navigator._refine()  # takes the map again
     drive.until("arrived")
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.config import choose, shown
+from dynastar.config import choose
 from dynastar.errors import InputError
 from dynastar.geometry import Goal, as_goal
 from dynastar.grid import OccupancyGrid
@@ -42,15 +42,6 @@ def as_robot(grid: Any, robot: Any, config: Any) -> Robot:
         omega_brake=limits.omega_brake / faster,
     )
     return replace(robot, limits=told)
-
-
-def check_planner(planner: Any) -> None:
-    """Raises InputError for what is no planner of one's own, or None."""
-    if planner is not None and not callable(getattr(planner, "plan", None)):
-        raise InputError(
-            f"a planner: got {shown(planner)}, expected an object with a method plan(grid, start, goal, "
-            "radius); NavigatorConfig(planner=PlannerConfig(planner=NAME)) takes one of dynastar's"
-        )
 
 
 def as_given_path(path: Path | npt.ArrayLike, heading: float | None) -> tuple[Path, Goal]:

@@ -14,7 +14,7 @@ from dynastar.navigator.arrival import has_arrived, stays_near
 from dynastar.navigator.braking import Acting, Commands
 from dynastar.navigator.config import NavigatorConfig, fitted, margin_of, refined
 from dynastar.navigator.driving import Driving
-from dynastar.navigator.inputs import as_given_path, as_robot, check_planner
+from dynastar.navigator.inputs import as_given_path, as_robot
 from dynastar.navigator.last_turn import LastTurn, turn_by
 from dynastar.navigator.mission import Mission
 from dynastar.navigator.planners import Cells, Planners, radii_of
@@ -47,7 +47,6 @@ class Navigator:
         planner: Planner | None = None,
     ) -> None:
         robot = as_robot(grid, robot, config)
-        check_planner(planner)
         config = fitted(config, robot)
         self.robot, self.config, self._grid = robot, config, grid
         planning_map = PlanningMap(grid, config.resolution, config.unknown)
@@ -120,10 +119,7 @@ class Navigator:
         self._choice: Choice | None = None
 
     def set_map(self, grid: OccupancyGrid) -> None:
-        """Use another map and plan anew; what was seen nearby is kept, unless the map's yaw is another.
-
-        Raises InputError or MapError for one that cannot be used; the map then stays as it was.
-        """
+        """Use another map, or raise InputError; what was seen nearby stays unless its yaw is another."""
         as_robot(grid, self.robot, self.config)
         self._use(grid, self.config)
         if self.mission.is_blocked:

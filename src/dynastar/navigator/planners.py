@@ -11,6 +11,7 @@ from dynastar.navigator.waiting_place import waiting_place, ways_to
 from dynastar.perception import LocalMap
 from dynastar.perception.planning_map import Patch, PlanningMap
 from dynastar.planning import GridPlanner, Plan, Planner, plan_by
+from dynastar.planning.external import check_planner
 
 Mask = npt.NDArray[np.bool_]
 Cells = npt.NDArray[np.int32]
@@ -54,6 +55,7 @@ class Planners:
             )
             for radius in sorted({roomy + config.comfort, roomy, tight}, reverse=True)
         ]
+        check_planner(planner)
         self._planner = planner
         # The search that finds the shortest path, where one is wanted.
         self.exact = "auto" if config.planner.exact and planner is None else ""

@@ -3,11 +3,12 @@
 import logging
 import math
 import time
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
-from dynastar.errors import NoPath, PlanningError
+from dynastar.config import shown
+from dynastar.errors import InputError, NoPath, PlanningError
 from dynastar.grid import OccupancyGrid
 from dynastar.path import Path
 from dynastar.planning.plan_type import Plan
@@ -29,6 +30,15 @@ class Planner(Protocol):
         What the map shows and what was seen since is occupied in ``grid``, unknown cells are as the
         navigator takes them. Raises NoPath, GoalOccupied or StartOccupied where there is none.
         """
+
+
+def check_planner(planner: Any) -> None:
+    """Raises InputError for what is no planner of one's own, or None."""
+    if planner is not None and not callable(getattr(planner, "plan", None)):
+        raise InputError(
+            f"a planner: got {shown(planner)}, expected an object with a method plan(grid, start, goal, "
+            "radius); NavigatorConfig(planner=PlannerConfig(planner=NAME)) takes one of dynastar's"
+        )
 
 
 def plan_by(

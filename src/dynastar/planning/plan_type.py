@@ -1,9 +1,11 @@
 """The settings of a planner, and its result."""
 
 from dataclasses import dataclass
+from numbers import Real
 from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
-from dynastar.config import Field, counted, self_checking, summary
+from dynastar.config import Field, counted, self_checking, shown, summary
+from dynastar.errors import ConfigError
 from dynastar.extras import plotter
 from dynastar.path import Path, ends_of
 from dynastar.planning.heuristic import HeuristicConfig
@@ -11,6 +13,16 @@ from dynastar.planning.search import Cells
 
 if TYPE_CHECKING:  # Matplotlib comes with an extra
     from matplotlib.axes import Axes
+
+
+MOST_RADIUS = 100.0  # m
+
+
+def as_radius(radius: float) -> float:
+    """A planning radius (m) as a float; ConfigError for one that is not valid."""
+    if isinstance(radius, Real) and 0.0 <= radius <= MOST_RADIUS:
+        return float(radius)
+    raise ConfigError(f"a planning radius is {shown(radius)} m: expected 0 to {MOST_RADIUS:g} m")
 
 
 @self_checking

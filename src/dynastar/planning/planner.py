@@ -2,12 +2,11 @@
 
 import math
 import time
-from numbers import Real
 
 import numpy as np
 import numpy.typing as npt
 
-from dynastar.config import choose, shown, summary
+from dynastar.config import choose, summary
 from dynastar.errors import (
     ConfigError,
     GoalOccupied,
@@ -25,7 +24,7 @@ from dynastar.planning.any_angle import straighten
 from dynastar.planning.escape import NO_WAY, WayOut, reach_of_escape, smoothed, way_out
 from dynastar.planning.explain import explained
 from dynastar.planning.inflated import InflatedGrid, Window
-from dynastar.planning.plan_type import Plan, PlannerConfig
+from dynastar.planning.plan_type import Plan, PlannerConfig, as_radius
 from dynastar.planning.search import ALGORITHMS, Cell, Cells, SearchResult
 from dynastar.planning.segments import first_contact
 from dynastar.planning.smoothing import smooth, without_repeats
@@ -33,15 +32,6 @@ from dynastar.planning.warming import warm_up
 
 Mask = npt.NDArray[np.bool_]
 Point = tuple[float, float]
-
-MOST_RADIUS = 100.0  # m
-
-
-def as_radius(radius: float) -> float:
-    """A planning radius (m) as a float; ConfigError for one that is not valid."""
-    if isinstance(radius, Real) and 0.0 <= radius <= MOST_RADIUS:
-        return float(radius)
-    raise ConfigError(f"a planning radius is {shown(radius)} m: expected 0 to {MOST_RADIUS:g} m")
 
 
 class GridPlanner:

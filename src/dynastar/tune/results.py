@@ -89,7 +89,7 @@ def write_results(
     }
     for name, text in texts.items():
         with written_aside(folder / name) as aside:
-            aside.write_text(text, encoding="utf-8", errors="backslashreplace")
+            aside.write_text(text, encoding="utf-8", errors="replace")
 
 
 def _counts(state: State) -> str:
