@@ -133,7 +133,7 @@ def test_map_and_goals_can_be_given_instead_of_recorded_ones(tmp_path, capsys, m
     assert "ticks following" in capsys.readouterr().out
     with pytest.raises(SystemExit):
         main(["replay", "--goal", "4", "2.5", "bare"])
-    assert "'bare' is no number; BAG comes before --goal" in capsys.readouterr().err
+    assert "'bare': expected a number; BAG comes before --goal" in capsys.readouterr().err
     for goal in (["4"], ["1", "2", "3", "4"]):
         assert main([*words, "--goal", *goal]) == 2
         assert "expected X Y, or X Y HEADING" in capsys.readouterr().err

@@ -114,9 +114,8 @@ def _number(text: str) -> float:
     """A number of ``--goal``, which takes all words up to the next option."""
     try:
         return number(text)
-    except ValueError:
-        words = f"{text!r:.80} is no number; BAG comes before --goal"
-        raise argparse.ArgumentTypeError(words) from None
+    except argparse.ArgumentTypeError as error:
+        raise argparse.ArgumentTypeError(f"{error}; BAG comes before --goal") from None
 
 
 def _goal(numbers: list[float]) -> "Goal":
