@@ -110,9 +110,11 @@ def test_pictures_of_a_part_that_was_measured_elsewhere_stay_as_they_are(tmp_pat
     }
 
 
-def test_all_that_is_recorded_is_of_one_commit():
+def test_every_part_is_recorded_to_its_end_and_of_one_commit():
+    assert set(RECORD) == {part.name for part in parts()}
+    assert all(part["complete"] for part in RECORD.values())
     for key in ("commit", "tree"):
-        assert len({part[key] for part in RECORD.values()}) <= 1
+        assert len({part[key] for part in RECORD.values()}) == 1
 
 
 def test_all_pages_name_the_same_commit():
