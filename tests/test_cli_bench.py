@@ -65,6 +65,8 @@ def test_a_mission_is_run_kept_and_replayed(
         (["office", "--replay", "1000000"], "has no mission 1000000"),
         (["office", "--replay", "0", "--missions", "2"], "--missions has no effect"),
         (["office", "--replay", "0", "--save-failures", "."], "--save-failures has no effect"),
+        (["office", "--replay", "0", "--workers", "2"], "--workers has no effect"),
+        (["office", "--no-gif"], "--no-gif leaves out the animation of --replay N alone"),
         (["movingai", "--ideal"], "--ideal has no effect"),
         (["movingai", "--attention", "none"], "--attention has no effect"),
         (["all", "--select", "3"], "--select goes with one suite"),

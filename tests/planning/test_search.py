@@ -330,6 +330,8 @@ def test_errors_have_names_and_say_where():
         SearchGrid(np.zeros((0, 3), dtype=bool))
     with pytest.raises(OutOfMap, match="leaves the map"):
         grid.update(1, 2, np.zeros((2, 1), dtype=bool))
+    with pytest.raises(MapError, match=r"row 1\.5, column 0: expected whole numbers"):
+        grid.update(1.5, 0, np.zeros((1, 1), dtype=bool))
 
 
 def test_start_is_goal():

@@ -157,6 +157,8 @@ def execute(arguments: argparse.Namespace) -> int:
         return _compare(arguments)
     if arguments.files:
         raise InputError(f"{arguments.files[0]}: only `bench compare` takes files")
+    if arguments.replay is None:
+        refuse_unheard(arguments, {"no_gif": False}, "leaves out the animation of --replay N alone")
     if arguments.suite == "all":
         return _run_all(arguments)
     choose(arguments.suite, {**SUITES, **COMMANDS}, "suite")
@@ -164,7 +166,8 @@ def execute(arguments: argparse.Namespace) -> int:
         why = f"has no effect: the suite {arguments.suite} reads no data"
         refuse_unheard(arguments, {"data": None}, why)
     if arguments.replay is not None:
-        refuse_unheard(arguments, CHOOSING, "has no effect with --replay, which runs one mission")
+        several = CHOOSING | {"workers": None, "dask": None}
+        refuse_unheard(arguments, several, "has no effect with --replay, which runs one mission")
         return _replay(arguments, _options(arguments))
     return _run(arguments, _options(arguments))
 

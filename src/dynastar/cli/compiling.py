@@ -23,7 +23,7 @@ def prepare() -> float:
         return 0.0
     began = time.perf_counter()
     if not sys.stderr.isatty():
-        print(f"{WORDS}: about 40 s on two cores", file=sys.stderr)
+        print(f"{WORDS}: half a minute to a minute on two cores", file=sys.stderr)
     children = [_start(part) for part in PARTS]
     try:
         _wait(children)

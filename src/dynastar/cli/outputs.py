@@ -69,7 +69,7 @@ def _strings(value: Any) -> Iterator[str]:
 def _toml(file: Path) -> dict[str, Any]:
     import tomllib
 
-    return tomllib.loads(file.read_text(encoding="utf-8"))
+    return tomllib.loads(file.read_text(encoding="utf-8-sig"))
 
 
 def _yaml(file: Path) -> dict[Any, Any]:

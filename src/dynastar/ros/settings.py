@@ -48,7 +48,7 @@ class NodeSettings(NamedTuple):
         tuple[float, ...],
         Field("readings that mean no return, as 0, nan or 65.5", "m", nan_is_legal=True),
     ] = ()
-    enable_stamped_cmd_vel: Annotated[bool, Field("TwistStamped overrides of Twist")] = False
+    enable_stamped_cmd_vel: Annotated[bool, Field("TwistStamped instead of Twist")] = False
     data_age: Annotated[float, AGE] = 0.2
     pose_age: Annotated[
         float,

@@ -20,8 +20,9 @@ OPEN, BY_THE_WALL = (1.0, 1.0, 0.0), (1.0, 0.36, 0.0)  # starts; the second is i
 def warm_up() -> None:
     """Compile or load all kernels of a drive, once per process, so that no command waits for it.
 
-    The first call of a version compiles, which takes about 40 s on two cores; later ones load what was
-    compiled. To that end two simulated robots, a disc and a polygon, drive past a box and a walker.
+    The first call of a version compiles, which takes half a minute to a minute on two cores; later ones
+    load what was compiled. To that end two simulated robots, a disc and a polygon, drive past
+    a box and a walker.
     """
     near = SearchGrid(np.zeros((3, 3), bool))  # as for a way out of the inflation
     near.flood((0, 0))
