@@ -50,6 +50,14 @@ def test_a_way_narrower_than_the_body_is_none_though_the_axle_is_at_its_end(behi
     assert drive.status.replans == 0
 
 
+def test_the_weakest_brakes_that_may_be_declared_are_driven_with():
+    """They are told to brake more gently than that by ``drive_error``."""
+    limits = Limits(0.05, 0.5, 0.05, 0.5, 0.01, 0.01)
+    arrives(
+        room(4.0, 4.0), Robot("weak", limits, Footprint.disc(0.2), FAR), (1, 2, 0), (2, 2), 120.0
+    )
+
+
 @pytest.mark.parametrize("omega_max", [0.1, 0.2])
 def test_a_robot_that_turns_slowly_turns_round(omega_max):
     robot = Robot("slow", Limits(0.5, omega_max, 0.5, 0.5, 0.5, 0.5), Footprint.disc(0.3), FAR)

@@ -13,7 +13,7 @@ from dynastar.grid import OccupancyGrid
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.pose_history import FARTHEST
 from dynastar.path import Path
-from dynastar.robot import ROBOTS, Robot
+from dynastar.robot import ROBOTS, Limits, Robot
 
 LONGEST_PATH = 1e5  # m of a path to follow
 
@@ -36,12 +36,12 @@ def as_robot(grid: Any, robot: Any, config: Any) -> Robot:
             raise InputError(f"{what}: got {type(value).__name__}, expected {expected}")
     assert isinstance(robot, Robot)
     limits, faster = robot.limits, 1.0 + config.drive_error
-    told = limits._replace(
-        v_min=limits.v_min if config.reverse else max(limits.v_min, 0.0),
-        v_brake=limits.v_brake / faster,
-        omega_brake=limits.omega_brake / faster,
-    )
-    return replace(robot, limits=told)
+    told = limits._asdict() | {
+        "v_min": limits.v_min if config.reverse else max(limits.v_min, 0.0),
+        "v_brake": limits.v_brake / faster,
+        "omega_brake": limits.omega_brake / faster,
+    }
+    return replace(robot, limits=Limits._make(told.values()))  # perhaps below what may be declared
 
 
 def as_given_path(path: Path | npt.ArrayLike, heading: float | None) -> tuple[Path, Goal]:
