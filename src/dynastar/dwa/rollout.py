@@ -117,10 +117,10 @@ def tail_speeds(cost_to_go, rules, state, gap, tail):
 
 @inner
 def roll_out(scene, rules, start, manoeuvre, rows):
-    """Write where the robot would be to ``rows``; False at contact in the first ``schedule.held``.
+    """Write where the robot would be to ``rows``.
 
-    The sample is held for a step at least. Later, the robot stops where it would touch an obstacle,
-    and where it leaves the map.
+    The sample is held for a step at least. The robot stays where it would touch an obstacle, and where
+    it leaves the map.
     """
     schedule, limits = rules.schedule, rules.limits
     obstacles, cost_to_go = scene.distance_to_obstacle, scene.cost_to_go
@@ -138,12 +138,9 @@ def roll_out(scene, rules, start, manoeuvre, rows):
             on_map = is_on_map(cost_to_go.value, state.pose.x, state.pose.y)
             gap = least_clearance(obstacles, rules.body, state.pose) - scene.margin
             if on_map and gap < near and touches(scene, rules, start, state.pose):
-                if i < schedule.held:
-                    return False
                 blocked = True
         k = schedule.step[i]
         write(rows[i], state, gap, on_map)
-    return True
 
 
 @inner

@@ -74,8 +74,9 @@ def search(scene, rules, state, stops_from, candidates, rows):
 def stops_in_the_way(scene, rules, start, rows):
     """Whether a moving obstacle that goes on as expected would touch the robot if it stopped now."""
     moving = scene.around.moving
-    if len(moving.obstacles) == 0 or not roll_out(scene, rules, start, AT_REST, rows):
+    if len(moving.obstacles) == 0:
         return False
+    roll_out(scene, rules, start, AT_REST, rows)
     return not passes_clear(moving, rules, rows, np.inf)
 
 
@@ -148,8 +149,7 @@ def score(scene, rules, start, i, candidate, rows):
             continue
         hold = rules.long_hold if long else short_hold
         manoeuvre = Manoeuvre(candidate.v, candidate.omega, hold, tail)
-        if not roll_out(scene, rules, start, manoeuvre, rows):
-            break  # all manoeuvres of a candidate begin alike
+        roll_out(scene, rules, start, manoeuvre, rows)
         if clear_for > 0.0 and not passes_clear(scene.around.moving, rules, rows, clear_for):
             continue
         candidate.refused = ADMISSIBLE
