@@ -63,7 +63,7 @@ def main() -> None:
     stayed = [row["number"] for row in wrong if row["length"] < STAYED and row["reachable"]]
     options = Options(seed=result["seed"])
     warm_up()
-    jobs = dict(completed(partial(looked, options=options), stayed, os.cpu_count() or 1))
+    jobs = dict(completed(partial(seen_in, options=options), stayed, os.cpu_count() or 1))
     found = {stayed[at]: jobs[at] for at in sorted(jobs)}
     print(f"{len(result['rows'])} missions, {len(wrong)} not right, {len(stayed)} never got away")
     print(f"{'mission':>8} {'robot':20} {'by what was seen, m':>20} {'unseen as free, m':>18}")
@@ -73,7 +73,7 @@ def main() -> None:
         draw(found, asked.picture)
 
 
-def looked(number: int, options: Options) -> Found:
+def seen_in(number: int, options: Options) -> Found:
     """What the robot of a mission had seen at its end."""
     suite = load_suite("random")
     made: list[Navigator] = []
