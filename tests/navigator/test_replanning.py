@@ -50,8 +50,9 @@ def test_a_given_path_is_followed_to_its_end(as_path):
     assert drive.status.replans == 0
 
 
-def test_a_path_that_ends_where_it_begins_is_driven_all_round():
-    drive, places = drive_along(np.vstack([SQUARE, SQUARE[:1]]))
+@pytest.mark.parametrize("heading", [None, 1.0])
+def test_a_path_that_ends_where_it_begins_is_driven_all_round(heading):
+    drive, places = drive_along(np.vstack([SQUARE, SQUARE[:1]]), heading=heading)
     assert drive.status.state == "arrived"
     assert np.hypot(*np.diff(places, axis=0).T).sum() > 12.0
 

@@ -31,6 +31,10 @@ class Mission:
         """Whether there is a goal to drive to."""
         return self.state not in OVER and bool(self.goals)
 
+    def goes_to(self, goals: Sequence[Goal]) -> bool:
+        """Whether the mission is under way to just these goals."""
+        return self.under_way and not self.is_blocked and list(goals) == self.goals
+
     def begin(self, goals: Sequence[Goal], reason: str) -> None:
         """Begin a mission to ``goals``; without goals it is idle."""
         self.goals, self.reason = list(goals), reason

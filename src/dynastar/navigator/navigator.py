@@ -32,7 +32,7 @@ from dynastar.scan import LaserScan
 class Navigator:
     """Takes a robot to its goals: give it every state and scan, and drive as it says.
 
-    Single-threaded, without a clock of its own; ``command`` never raises while driving: trouble is
+    Single-threaded; time is that of the stamps. ``command`` never raises while driving: trouble is
     a braking twist and a ``status``. A ``planner`` takes the place of dynastar's own, ``robot`` may be
     a name in ``ROBOTS``. Raises InputError if ``grid``, ``robot`` or ``config`` has the wrong type.
 
@@ -167,19 +167,19 @@ class Navigator:
     def set_goal(self, goal: Sequence[float | None] | Sequence[Sequence[float | None]]) -> None:
         """Drive to one goal, or several in order: (x, y) metres and a heading in radians or None.
 
-        Tuples do as well as Goals. Raises InputError for a goal that is not valid.
+        Tuples do as well as Goals. Those that it drives to already change nothing. Raises InputError for
+        a goal that is not valid.
         """
-        goals = as_goals(goal)
-        self._set_out(goals, "new goal" if goals else "no goal")
+        self._set_out(goals := as_goals(goal), "new goal" if goals else "no goal")
 
     def follow(self, path: Path | npt.ArrayLike, heading: float | None = None) -> None:
         """Drive along a path (n, 2), metres, to its end and to a ``heading`` there, if given (rad).
 
         Nothing is planned. Obstacles on the path are passed within the local map, and waited for
         where that cannot be done. Loops that are shorter than what the robot drives within
-        ``dwa.horizon`` are cut. Raises InputError for a path without points, one that is not finite,
-        leads farther than 1e6 m from the map's origin or is longer than 1e5 m, and for a heading that
-        a goal cannot have.
+        ``dwa.horizon`` are cut. Another path to the same end does not begin anew. Raises InputError for
+        a path without points, one that is not finite, leads farther than 1e6 m from the map's origin or is
+        longer than 1e5 m, and for a heading that a goal cannot have.
         """
         path, end = as_given_path(path, heading)
         self._set_out([end], "new path", path)
@@ -189,6 +189,8 @@ class Navigator:
         self._set_out([], "cancelled")
 
     def _set_out(self, goals: Sequence[Goal], reason: str, path: Path | None = None) -> None:
+        if self.mission.goes_to(goals) and self.route.goes_on(path):
+            return
         self.mission.begin(goals, reason)
         self._start_over(path)
 
@@ -243,9 +245,8 @@ class Navigator:
         return self._commands.send(state, self.sensing.on_trial(state, command))
 
     def _has_arrived(self, state: RobotState, acting: Acting) -> bool:
-        return self.route.ends_within(self.config.goal_tolerance) and has_arrived(
-            self._goal, state.pose, acting, self.robot.limits, self.config
-        )
+        at_end, limits = self.route.is_at_end, self.robot.limits
+        return at_end and has_arrived(self._goal, state.pose, acting, limits, self.config)
 
     def _update_route(
         self, state: RobotState, changed: bool, movers: Sequence[MovingObstacle] | None
@@ -279,7 +280,7 @@ class Navigator:
         closed = self.planners.closed_under(self.sensing.local_map)
         scene = driving.scene(pose, state.twist.v, view, target, closed, self.planning_map)
         goal, limits = self._goal, self.robot.limits
-        is_there = stays_near(goal, pose, acting, limits, self.config)
+        is_there = self.route.is_at_end and stays_near(goal, pose, acting, limits, self.config)
         if goal.heading is not None and is_there and self.route.path is not None:
             rules, turn = driving.window.rules, self._last_turn
             angle = turn.angle(scene, rules, pose, goal.heading)

@@ -68,6 +68,14 @@ class Route:
         self._planned = False  # for this goal
         self._unsure = False  # an exact search may find a shorter path
 
+    def goes_on(self, given: Path | None) -> bool:
+        """Go on to the same goal along the path that is ``given``, or False where the other is planned."""
+        if given is None or self.given is None:
+            return given is self.given
+        if not np.array_equal(given.points, self.given.points):
+            self.start_over(given)
+        return True
+
     def set_map(self, planners: Planners) -> None:
         """Another map: the next tick plans anew."""
         self.planners, self.path, self.error = planners, None, None
@@ -86,11 +94,12 @@ class Route:
         self.planners.forget()
         self.path, self.error = None, None
 
-    def ends_within(self, distance: float) -> bool:
-        """True if less than ``distance`` m of a given path are left. Always True for planned paths."""
-        return self.given is None or (
-            self.path is not None and self.path.length - self.s <= distance
-        )
+    @property
+    def is_at_end(self) -> bool:
+        """Whether no more than the goal's tolerance is left of a given path. True for planned paths."""
+        if self.given is None:
+            return True
+        return self.path is not None and self.path.length - self.s <= self.config.goal_tolerance
 
     def target(self, ahead: float) -> PathTarget:
         """Path to follow this tick. A user-given path is limited to the next ``ahead`` m.
