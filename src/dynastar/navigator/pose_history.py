@@ -2,12 +2,14 @@
 
 import math
 from collections import deque
+from collections.abc import Sequence
 from itertools import pairwise
+from time import monotonic
 
 from dynastar.geometry import Pose2D, interpolate, wrap_angle
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.status import RobotState, is_finite
-from dynastar.robot import Limits
+from dynastar.robot import Limits, arc
 
 AT_REST = 0.01  # m/s and rad/s up to which the robot is at rest
 FARTHEST = 1e6  # m from the map's origin, where positions still tell cells apart
@@ -15,6 +17,7 @@ KEPT_FOR = 2.0  # s, no less than any scan_age
 OTHER_CLOCK = 1.0  # s of rising stamps after time went back, from which on that is a clock anew
 FASTER = 1.2  # times the highest speed, up to which a pose has not jumped
 JUMP = 0.05  # m
+LONGEST_CARRIED = 0.5  # s for which a pose is carried on at its twist
 ON_TIME = 1.1  # of the declared period, up to which commands are not late
 LONGEST_PERIOD = 1.0  # s
 TURN_JUMP = 0.1  # rad
@@ -28,6 +31,8 @@ class PoseHistory:
         self._states: deque[RobotState] = deque()
         self._was_there = False  # before the oldest state that is kept
         self._back: tuple[float, float] | None = None  # first and last stamp since time went back
+        self._repeated = 0  # how often the newest stamp was given again,
+        self._given_at = 0.0  # and since when by the machine's clock (s)
 
     def fault(self, state: RobotState) -> str | None:
         """Describe why a state cannot be used, or None."""
@@ -43,7 +48,21 @@ class PoseHistory:
             self._back = begun if last <= state.stamp else state.stamp, state.stamp
             return f"time went back by {self._states[-1].stamp - state.stamp:.6g} s"
         self._back = None
+        if self._repeats(state.stamp):
+            return f"the robot's state repeats: its stamp is still {state.stamp:.6g} s"
         return None
+
+    def _repeats(self, stamp: float) -> bool:
+        """Whether the same stamp has been given for ``scan_age``, by the calls and by our clock.
+
+        A caller may ask more often than there is a state, or wait for long between two calls.
+        """
+        if not self._states or stamp > self._states[-1].stamp:
+            self._repeated, self._given_at = 0, monotonic()
+            return False
+        self._repeated += 1
+        longest = self._config.scan_age
+        return self._repeated * self._config.period > longest < monotonic() - self._given_at
 
     @property
     def clock_is_another(self) -> bool:
@@ -64,6 +83,7 @@ class PoseHistory:
         self._states.append(state)
         while state.stamp - self._states[0].stamp > KEPT_FOR:
             self._states.popleft()
+            self._was_there = False
         return jumped
 
     @property
@@ -87,18 +107,14 @@ class PoseHistory:
         return away, driven, last.stamp - first.stamp
 
     def pose_at(self, stamp: float) -> Pose2D | None:
-        """The pose at a time (s), interpolated between the states that are kept; None if it is not known.
+        """The pose at a time (s), as ``pose_at`` has it; None if it is not known.
 
         Before the first state it was the same if the robot was at rest then. Before a jump it is not known.
         """
-        after = self._states[-1]
-        for before in reversed(self._states):
-            if before.stamp <= stamp:
-                span = after.stamp - before.stamp
-                fraction = min(1.0, (stamp - before.stamp) / span) if span > 0.0 else 0.0
-                return interpolate(before.pose, after.pose, fraction)
-            after = before
-        return self._states[0].pose if self._was_there else None
+        first = self._states[0]
+        if stamp < first.stamp:
+            return first.pose if self._was_there else None
+        return pose_at(self._states, stamp)
 
     def _is_jump(self, last: RobotState, state: RobotState) -> bool:
         """Whether the pose moved further than the robot can have."""
@@ -110,3 +126,20 @@ class PoseHistory:
             moved > FASTER * fastest * dt + 4.0 * config.pose_error + JUMP
             or turned > FASTER * limits.omega_max * dt + 4.0 * config.heading_error + TURN_JUMP
         )
+
+
+def pose_at(states: Sequence[RobotState], stamp: float) -> Pose2D:
+    """The pose at a time (s): interpolated between two states, carried on at the twist of the last.
+
+    Before the first state it is that of the first.
+    """
+    after = states[-1]
+    if stamp > after.stamp:
+        return arc(after.pose, after.twist, min(stamp - after.stamp, LONGEST_CARRIED))
+    for before in reversed(states):
+        if before.stamp <= stamp:
+            span = after.stamp - before.stamp
+            fraction = (stamp - before.stamp) / span if span > 0.0 else 0.0
+            return interpolate(before.pose, after.pose, fraction)
+        after = before
+    return after.pose
