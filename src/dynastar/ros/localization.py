@@ -7,14 +7,13 @@ from typing import Literal
 from dynastar.errors import InputError
 from dynastar.geometry import Pose2D, Twist, compose, inverse
 from dynastar.navigator import RobotState
-from dynastar.robot import arc
+from dynastar.navigator.pose_history import pose_at
 
 PoseSource = Literal["odom", "amcl", "tf"]
 KEPT = 5.0  # s of odometry
 SET_BACK = (
     0.5  # s by which a stamp has to be older than the one before for a clock that was set back
 )
-LONGEST = 0.5  # s by which a pose is carried on at its twist
 
 
 class Localization:
@@ -57,13 +56,12 @@ class Localization:
         """Takes in the pose in the map at a time, as /amcl_pose has it; kept until there is odometry."""
         self._pose = None if self._odometry else (stamp, pose)
         if self._odometry:
-            nearest = min(self._odometry, key=lambda state: abs(state.stamp - stamp))
-            self.map_to_odom = compose(pose, inverse(nearest.pose))
+            self.map_to_odom = compose(pose, inverse(pose_at(self._odometry, stamp)))
 
     def at(self, now: float) -> RobotState | None:
         """State in the map at ``now`` (s), from the newest odometry; None if it is not known."""
         if not self._odometry or self.map_to_odom is None:
             return None
         newest = self._odometry[-1]
-        pose = arc(newest.pose, newest.twist, min(max(now - newest.stamp, 0.0), LONGEST))
+        pose = pose_at(self._odometry, max(now, newest.stamp))
         return RobotState(now, compose(self.map_to_odom, pose), newest.twist)
