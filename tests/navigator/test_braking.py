@@ -116,6 +116,17 @@ def test_stops_are_certified_for_every_latency_up_to_the_declared_one(latency):
     assert stops[-1].hold == pytest.approx(period)
 
 
+def test_until_the_oldest_command_that_is_known_acts_the_robot_goes_on_as_it_does():
+    limits, latency = ROBOTS["jackal"].limits, 0.3
+    commands = Commands(limits, 0.1, latency)
+    for k in range(6):
+        state = RobotState(0.1 * k, Pose2D(0.2 * k, 0.0, 0.0), Twist(2.0, 0.0))
+        pose, twist = commands.when_one_acts(state)
+        assert pose == pytest.approx((0.2 * k + 0.6, 0.0, 0.0))
+        assert twist == Twist(2.0, 0.0)
+        commands.send(state, Twist(2.0, 0.0))
+
+
 def test_commands_under_way_may_act_alone_until_the_next_one_acts():
     limits, period, latency = ROBOTS["jackal"].limits, 0.1, 0.3
     commands = Commands(limits, period, latency)

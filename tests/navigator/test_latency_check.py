@@ -13,8 +13,9 @@ REST = Twist(0.0, 0.0)
 STEPS = 20  # of the drive to a period
 
 
-def told(true, declared, *, name="jackal", gain=1.0, lag=0.0, noise=0.0, period=0.1, changes=0.15):
+def told(true, declared, *, name="jackal", gain=1.0, lag=0.0, noise=0.0, changes=0.15, calls=1):
     """The latencies that are told, of random commands for 15 s; ``changes`` a share of the ticks."""
+    period = 0.1
     limits, random = ROBOTS[name].limits, np.random.default_rng(3)
     check, sent, found = LatencyCheck(limits, declared), [], []
     wanted, command = REST, REST
@@ -26,7 +27,8 @@ def told(true, declared, *, name="jackal", gain=1.0, lag=0.0, noise=0.0, period=
         command = slewed(command, wanted, limits, period)
         now = k * period
         read = driven + random.uniform(-noise, noise, 2)
-        check.note(RobotState(now, HERE, Twist(*read)), command)
+        for _ in range(calls):
+            check.note(RobotState(now, HERE, Twist(*read)), command)
         sent.append((now, command))
         found.append(check.longer)
         for i in range(STEPS):
@@ -66,6 +68,10 @@ def test_a_latency_up_to_the_declared_one_is_not_told(drive, true, declared):
 
 def test_a_drive_at_constant_speed_tells_nothing():
     assert not told(0.4, 0.0, changes=0.0)
+
+
+def test_a_loop_that_is_faster_than_the_odometry_is_told():
+    assert told(0.4, 0.0, calls=2) == told(0.4, 0.0)
 
 
 def test_stamps_that_do_not_rise_begin_anew():

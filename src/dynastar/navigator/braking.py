@@ -95,14 +95,17 @@ class Commands:
     def when_one_acts(self, state: RobotState, latency: float | None = None) -> Acting:
         """Pose and twist at the time from which a command given now acts.
 
-        That is after the declared ``latency`` (s), or another one.
+        That is after the declared ``latency`` (s), or another one. Until the oldest command that is known
+        acts, the robot goes on as it does.
         """
         latency = self.latency if latency is None else latency
-        if latency <= 0.0 or not self._sent:
+        if latency <= 0.0:
             return Acting(state.pose, state.twist)
-        ends = [stamp + latency for stamp, _ in self._sent[1:]] + [state.stamp + latency]
+        ends = [stamp + latency for stamp, _ in self._sent] + [state.stamp + latency]
         commands, durations = [], []
-        for (stamp, twist), end in zip(self._sent, ends, strict=True):
+        for (stamp, twist), end in zip(
+            [Sent(-math.inf, state.twist), *self._sent], ends, strict=True
+        ):
             span = end - max(stamp + latency, state.stamp)
             if span > 1e-9:
                 commands.append(twist)

@@ -42,8 +42,10 @@ class LatencyCheck:
     def note(self, state: RobotState, command: Twist) -> None:
         """Record a command given in a state."""
         log, now = self._log, state.stamp
-        if log and now <= log[-1].stamp:
+        if log and now < log[-1].stamp:
             log.clear()
+        elif log and now == log[-1].stamp:
+            log.pop()
         log.append(Entry(now, state.twist, command))
         while now - log[0].stamp > KEPT_FOR:
             log.popleft()
