@@ -123,6 +123,18 @@ def test_data_that_stay_away_stop_it_and_it_goes_on(loop):
     assert loop.tick().state == "passing"
 
 
+@pytest.mark.parametrize("frame", ["odom", "map"])
+def test_a_scan_in_a_frame_that_the_robot_moves_in_is_refused(loop, frame):
+    for parent, child in (("map", "odom"), ("odom", "base_link"), ("base_link", "laser")):
+        message = OUT.transforms([(parent, child, Pose2D(0.0, 0.0, 0.0))], loop.now)
+        assert loop.bridge.take("/tf", message) == ""
+    assert f"the scan is in the frame '{frame}'" in loop.bridge.take(
+        "scan", a_scan(loop.now, 1.0, frame)
+    )
+    assert loop.bridge.take("scan", a_scan(loop.now, 1.0, "laser")) == ""
+    assert loop.bridge.take("scan", a_scan(loop.now, 1.0, "not_in_tf")) == ""
+
+
 def test_scans_of_two_lidars_count_between_two_ticks(loop):
     loop.ticks(30)
     mount = [("base_link", "rear", Pose2D(-0.02, 0.0, 0.0))]

@@ -104,11 +104,20 @@ class Intake(ABC):
         self._new_scans.append(self._scan)
 
     def _mount(self, frame: str) -> Mount:
-        """Where the lidar is: as given, else from tf where it is known, else as built in."""
-        built_in = Mount(self.robot.lidar.mount)
+        """Where the lidar is: as given, else from tf where it is known, else as built in.
+
+        InputError for a frame that tf has elsewhere than on the robot.
+        """
+        built_in, base = Mount(self.robot.lidar.mount), self.settings.base_frame
         if self.settings.laser_pose:
             return built_in
-        found = self.transforms.planar(self.settings.base_frame, frame.lstrip("/"))
+        name = frame.lstrip("/")
+        found = self.transforms.planar(base, name)
+        if found is None and self.transforms.planar(name, base) is not None:
+            raise InputError(
+                f"the scan is in the frame '{name:.80}', which the robot moves in: expected the frame "
+                f"of a lidar, fixed to '{base}'"
+            )
         if found is None:
             self._assumed.add(frame)
             return built_in
