@@ -30,7 +30,7 @@ class Case:
 
     def guide(self, points, here=HERE, s=0.0, moving=NOTHING, ahead=math.inf):
         target = PathTarget(Path(np.array(points, float)), s, ahead)
-        encounter = Encounter(*here, 1.0, 0.3, *TIMES[:2])
+        encounter = Encounter(*here, 1.0, 0.3, TIMES.step)
         return self.guidance.update(self.obstacles, self.closed, target, moving, encounter)
 
 

@@ -18,14 +18,13 @@ DEVIATIONS = 2.0  # standard deviations from which on a moving obstacle costs no
 class Encounter(NamedTuple):
     """How the robot would meet moving obstacles: its place (m), speed (m/s) and radius (m).
 
-    Predictions are known from ``begin`` on, every ``step`` seconds.
+    It starts when a command acts; predictions are known every ``step`` seconds from then on.
     """
 
     x: float
     y: float
     speed: float
     radius: float
-    begin: float
     step: float
 
 
@@ -70,7 +69,7 @@ def add_encounters(cost, moving, encounter):
                     x = cost.x0 + (column + 0.5) * a
                     away_x, away_y = x - encounter.x, y - encounter.y
                     arrives = math.sqrt(away_x * away_x + away_y * away_y) / encounter.speed
-                    k = int(math.floor((arrives - encounter.begin) / encounter.step - 0.5))
+                    k = int(math.floor(arrives / encounter.step - 0.5))
                     if k < 0 or k >= steps:
                         continue
                     travel, deviation = moving.travel[h, k], moving.deviation[m, k]

@@ -67,14 +67,12 @@ class Driving(Admissibility):
 
         ``closed`` are the cells of the local map where no plan leads.
         """
-        begin, step, *_ = self.times
         encounter = Encounter(
             x=pose.x,
             y=pose.y,
             speed=self.robot.limits.v_max,
             radius=self.window.rules.risk_radius,
-            begin=begin,
-            step=step,
+            step=self.times.step,
         )
         guide = self.guidance.update(
             view.distance_to_obstacle, closed, target, view.moving, encounter
