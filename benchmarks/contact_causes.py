@@ -43,6 +43,7 @@ PARTS = {  # with people or discs that move: their suite
     "office": "office",
     "maps": "maps",
     "navground": "navground",
+    "mrpb": "mrpb",
     "table3": "paper",
 }
 BEFORE = 3.0  # s before the contact in which the robot's greatest speed is looked for
@@ -52,7 +53,7 @@ STRAYED = 0.3  # m between where that would have led and the place of the contac
 HIT = 0.03  # m between the end of a reading and the person's outline
 JUMP = 0.5  # m between two ticks, which nobody walks: a disc of DynaBARN begins its way anew
 CAUSES = {
-    "appeared": "began to be there, or jumped, within the stopping time",
+    "appeared": "appeared, or jumped, within the stopping time",
     "hidden": "was hidden until the robot could not stop any more",
     "not looked": "came from where the lidar does not look",
     "turned": "turned, stopped, started or changed pace within the stopping time",

@@ -50,6 +50,12 @@ COMPARED = {  # lines of the README: its suite of the scoreboard
     "real maps, unmapped boxes, walkers (1)": "maps",
     "people who notice the robot late, or react (1)": "people",
 }
+WHOLE = {  # the parts that drove all missions of a suite of the scoreboard
+    "barn": ("barn",),
+    "dynabarn": ("dynabarn",),
+    "maps": ("maps",),
+    "people": ("people_late", "people_reactive"),
+}
 
 
 def table(head: Sequence[str], lines: Iterable[Sequence[str]], left: bool = False) -> str:
@@ -171,7 +177,10 @@ def readme_table(found: Found) -> str:
     lines = []
     for title, name in COMPARED.items():
         of, others = beside(found["scoreboard"], name)
-        lines.append((title, ours(of), others_in_words(others)))
+        whole = [found[part] for part in WHOLE[name]]
+        succeeded, driven = (sum(one[key] for one in whole) for key in ("succeeded", "missions"))
+        own = f"{ours(of)}; all missions: {succeeded} of {driven}"
+        lines.append((title, own, others_in_words(others)))
     prefix = f"{INDIFFERENT}-"
     others = {n.removeprefix(prefix): of for n, of in found.items() if n.startswith(prefix)}
     lines.append(("indifferent people (1)", ours(found[INDIFFERENT]), others_in_words(others)))

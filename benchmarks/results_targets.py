@@ -11,11 +11,11 @@ Result = Mapping[str, Any]
 Measured = tuple[str, bool]  # in words, and whether the target is met
 
 CHALLENGE = {"easy": (0.98, 0.01), "medium": (0.96, 0.02), "hard": (0.80, 0.06)}  # of DynaBARN
-TD3 = {
-    "easy": 0.74,
+PUBLISHED = {
+    "easy": 0.78,
     "medium": 0.60,
     "hard": 0.28,
-}  # on DynaBARN at 0.5 m/s, as [DynaBARN] quotes it
+}  # the best on DynaBARN at 0.5 m/s, of a DWA and of TD3, as [DynaBARN] quotes them
 NEAR = 0.05  # share of the time
 
 
@@ -122,8 +122,8 @@ def dynabarn(result: Result) -> Measured:
 
 def dynabarn_slow(result: Result) -> Measured:
     """Successes by difficulty."""
-    groups = {name: result["groups"][f"{name} 0.5 m/s"] for name in TD3}
-    met = all(of["succeeded"] > TD3[name] * of["missions"] for name, of in groups.items())
+    groups = {name: result["groups"][f"{name} 0.5 m/s"] for name in PUBLISHED}
+    met = all(of["succeeded"] > PUBLISHED[name] * of["missions"] for name, of in groups.items())
     return "; ".join(map(counted, groups.values())), met
 
 
@@ -168,9 +168,9 @@ TARGETS = (
         dynabarn,
     ),
     Target(
-        "the same at 0.5 m/s: ahead of TD3, the best published",
+        "the same at 0.5 m/s: ahead of the best published",
         "dynabarn_slow",
-        "74, 60, 28 %",
+        "78, 60, 28 %",
         dynabarn_slow,
     ),
     Target("MRPB: arrived, time over the bound", "mrpb", "all, 1.3", missions(1.0, 1.3)),
@@ -219,7 +219,7 @@ TARGETS = (
         missions(0.99, 1.35),
     ),
     Target(
-        "robots as they are sold: rightly ended, contacts",
+        "eight robots: rightly ended, contacts",
         "robots",
         "98 %, 0",
         missions(0.98, contacts=0),

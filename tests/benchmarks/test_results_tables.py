@@ -84,15 +84,15 @@ def test_a_target_is_met_or_missed_with_the_command_beside_it(measured):
             "`dynastar bench dynabarn --seed 10000` | 98, 96, 80 %; 1, 2, 6 % | 40 of 40 (91-100), 0; "
             "39 of 40 (87-100), 0; 33 of 40 (68-91), 2 |"
         ),
-        "the same at 0.5 m/s: ahead of TD3, the best published": (
-            "`dynastar bench dynabarn --select 1000::2 --seed 10000` | 74, 60, 28 % | "
+        "the same at 0.5 m/s: ahead of the best published": (
+            "`dynastar bench dynabarn --select 1000::2 --seed 10000` | 78, 60, 28 % | "
             "19 of 20 (76-99); 12 of 20 (39-78); 6 of 20 (15-52): missed |"
         ),
         "MRPB: arrived, time over the bound": (
             "`dynastar bench mrpb --seed 10000` | all, 1.3 | 9 of 10 (60-98), 1.31, "
             "1 moving contact: missed |"
         ),
-        "robots as they are sold: rightly ended, contacts": (
+        "eight robots: rightly ended, contacts": (
             "`dynastar bench robots --seed 10000` | 98 %, 0 | 197 of 200 (96-99), no contact |"
         ),
         "the same in MuJoCo": (
@@ -240,6 +240,11 @@ def test_the_readmes_table():
     found["scoreboard"]["others"]["kompass_dwa"]["barn"] = result(19, 20, rows=half)
     beside = {"HL": row(time=8.8), "ORCA": row(outcome="contact")}
     found |= {
+        "barn": result(148, 150),
+        "dynabarn": result(110, 120),
+        "maps": result(98, 100),
+        "people_late": result(147, 160),
+        "people_reactive": result(297, 300),
         "people_none": result(94, 160),
         "people_none-orca": result(50, 160),
         "crowdnav": result(495, 500),
@@ -252,10 +257,11 @@ def test_the_readmes_table():
     found["table1"] = {"tables": {"table1-time": arms, "table1-length": arms}}
     shown = lines(tables.readme_table(found))
     assert shown[2] == (
-        "| BARN: static clutter (1) | 20 of 20 (84-100) | "
+        "| BARN: static clutter (1) | 20 of 20 (84-100); all missions: 148 of 150 | "
         "kompass DWA 19 of 20 (76-99), pure pursuit 13 of 20 (43-82) |"
     )
     assert shown[3].endswith("| pure pursuit 13 of 20 (43-82) |")
+    assert "; all missions: 444 of 460 |" in shown[5]
     assert shown[6] == "| indifferent people (1) | 94 of 160 (51-66) | ORCA 50 of 160 (25-39) |"
     assert "| 495 of 500 (98-100), 11.8 s | ORCA 212 of 500 (38-47), 11.8 s; in print" in shown[7]
     assert shown[8].endswith("| HL 2 of 2 (34-100), 8.8 s; ORCA 1 of 2 (9-91), 10.0 s |")

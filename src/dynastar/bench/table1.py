@@ -1,7 +1,7 @@
 """Table I: traditional against improved A*, expanded cells, path length and time, over many maps."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from itertools import count, islice
 from pathlib import Path
@@ -73,7 +73,7 @@ def run(
     """
     folder.mkdir(parents=True, exist_ok=True)
     each = -(-maps // len(KINDS))
-    jobs = [(kind, number) for kind in KINDS for number in _numbers(kind, each, seed, size)]
+    jobs = [(kind, number) for kind in KINDS for number in numbers(kind, each, seed, size)]
     name = "table1" if size == SIZE else f"table1-{size}"
     settings = {"table": 1, "seed": seed, "size": size, "version": code_version()}
     work = partial(_row, seed=seed, size=size)
@@ -124,7 +124,7 @@ def measure(drawn: Map, slow: bool = True) -> Row:
         name: partial(grid.search, drawn.start, drawn.goal, algorithm, terms)
         for name, (algorithm, terms) in SEARCHES.items()
     }
-    for name, (result, seconds) in _timed(searches).items():
+    for name, (result, seconds) in timed(searches).items():
         found[name] = result
         row[name] = {"expanded": result.expanded, "length": result.cost, "seconds": seconds}
     ways = {name: result.cells.astype(np.float64) + 0.5 for name, result in found.items()}
@@ -134,10 +134,10 @@ def measure(drawn: Map, slow: bool = True) -> Row:
         "weighted, smoothed": partial(fast, ways["weighted, w = 2"]),
         "improved, fast": partial(fast, ways["improved"]),
     }
-    smoothed = _timed(smoothings)
+    smoothed = timed(smoothings)
     if slow:
         way = ways["improved"]
-        smoothed |= _timed(
+        smoothed |= timed(
             {"improved, any angle": lambda: straighten(drawn.occupied, way, 0.0, fast(way))}
         )
     for name, (line, seconds) in smoothed.items():
@@ -148,7 +148,8 @@ def measure(drawn: Map, slow: bool = True) -> Row:
     return row
 
 
-def _timed(arms: dict[str, Callable[[], Any]]) -> dict[str, tuple[Any, float]]:
+def timed(arms: Mapping[str, Callable[[], Any]]) -> dict[str, tuple[Any, float]]:
+    """Each arm's result and its best time (s) of some rounds, in which the arms take turns."""
     best: dict[str, tuple[Any, float]] = {}
     spent, rounds = 0.0, 0
     while rounds < ROUNDS or spent < ENOUGH:
@@ -166,7 +167,7 @@ def _length(line: Any) -> float:
     return float(np.hypot(*np.diff(line, axis=0).T).sum())
 
 
-def _numbers(kind: str, some: int, seed: int, size: int) -> list[int]:
+def numbers(kind: str, some: int, seed: int, size: int) -> list[int]:
     """The first maps of a kind that have a way."""
     return list(islice((n for n in count() if draw(kind, n, seed, size) is not None), some))
 

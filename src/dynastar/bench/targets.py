@@ -58,9 +58,9 @@ TARGETS = (
         0.35,
         _table1("all", "total_time_ratio", "median", f"table1_{LARGE}"),
     ),
-    Target("fraction that did not arrive", 0.005, _lost),
-    Target("fraction with a contact while moving", 0.002, _touched("default")),
-    Target("the same, preset paper", 0.002, _touched("paper")),
+    Target("fraction that did not arrive", 0.01, _lost),
+    Target("fraction with a contact while moving", 0.003, _touched("default")),
+    Target("the same, preset paper", 0.003, _touched("paper")),
     Target("hybrid: length, median", 0.93, _table3("length_ratio", "median")),
     Target("hybrid: turning points, median", 0.57, _table3("turning_ratio", "median")),
 )

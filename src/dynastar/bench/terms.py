@@ -1,23 +1,19 @@
 """The terms of Eq. 2 on maps: how many cells each arm expands, for how long a way, in what time."""
 
-import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import partial
-from itertools import count, islice
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from dynastar.bench.arms import PLAIN, TERMS
 from dynastar.bench.families import KINDS, Map, draw
 from dynastar.bench.pairs import median_in_words
 from dynastar.bench.rows import collect
+from dynastar.bench.table1 import numbers, timed
 from dynastar.bench.tables import Cell, Table, spread_of
 from dynastar.bench.versions import code_version
 from dynastar.planning import HeuristicConfig, SearchGrid
 
-ROUNDS = 3  # each arm's best time of so many, in turns
 BASE = "Euclidean A*"  # the traditional one, which the others are compared with
 
 ARMS: dict[str, tuple[str, HeuristicConfig]] = {
@@ -40,7 +36,7 @@ def run(
     """
     folder.mkdir(parents=True, exist_ok=True)
     each = -(-maps // len(KINDS))
-    jobs = [(kind, number) for kind in KINDS for number in _numbers(kind, each, seed, size)]
+    jobs = [(kind, number) for kind in KINDS for number in numbers(kind, each, seed, size)]
     settings = {"table": "terms", "seed": seed, "size": size, "version": code_version()}
     work = partial(_row, seed=seed, size=size)
     return collect("terms", work, jobs, folder / "terms.jsonl", settings, workers, progress)
@@ -50,14 +46,12 @@ def measure(drawn: Map) -> Row:
     """One map's row: by arm the cells expanded, the length in cells, and the seconds it took."""
     grid = SearchGrid(drawn.occupied)
     row: Row = {"kind": drawn.kind, "number": drawn.number}
-    for _ in range(ROUNDS):
-        for arm, (algorithm, terms) in ARMS.items():
-            began = time.perf_counter()
-            found = grid.search(drawn.start, drawn.goal, algorithm, terms)
-            seconds = time.perf_counter() - began
-            before = row[arm]["seconds"] if arm in row else np.inf
-            figures = (found.expanded, found.cost, min(seconds, before))
-            row[arm] = dict(zip(MEASURED, figures, strict=True))
+    searches = {
+        arm: partial(grid.search, drawn.start, drawn.goal, algorithm, terms)
+        for arm, (algorithm, terms) in ARMS.items()
+    }
+    for arm, (found, seconds) in timed(searches).items():
+        row[arm] = dict(zip(MEASURED, (found.expanded, found.cost, seconds), strict=True))
     return row
 
 
@@ -108,11 +102,6 @@ def _pool(rows: Sequence[Row]) -> Table:
         lines,
         "Cells expanded, length of the grid path and time of the search, on one kernel.",
     )
-
-
-def _numbers(kind: str, some: int, seed: int, size: int) -> Iterator[int]:
-    """The first maps of a kind that have a way."""
-    return islice((n for n in count() if draw(kind, n, seed, size) is not None), some)
 
 
 def _row(job: tuple[str, int], seed: int, size: int) -> Row:
