@@ -7,7 +7,7 @@ from dynastar.geometry import Twist
 
 
 class Scripted:
-    """Turns on the spot towards the goal, drives there at ``SPEED`` and stops within ``NEAR`` of it."""
+    """Turns on the spot towards the goal, drives there at ``SPEED``, stops within ``NEAR`` and turns."""
 
     SPEED, NEAR = 1.0, 0.2
 
@@ -24,8 +24,10 @@ class Scripted:
         x, y, theta = state.pose
         away = math.hypot(self.goal.x - x, self.goal.y - y)
         if away < self.NEAR:
-            self.status.state = "arrived"
-            return Twist(0.0, 0.0)
+            heading = theta if self.goal.heading is None else self.goal.heading
+            off = math.remainder(heading - theta, math.tau)
+            self.status.state = "arrived" if abs(off) < 0.05 else "turning"
+            return Twist(0.0, 0.0 if abs(off) < 0.05 else max(-1.0, min(1.0, off)))
         error = math.remainder(math.atan2(self.goal.y - y, self.goal.x - x) - theta, math.tau)
         return Twist(self.SPEED if abs(error) < 0.2 else 0.0, max(-1.0, min(1.0, 4.0 * error)))
 

@@ -119,6 +119,31 @@ def test_the_map_is_not_cleared_and_forgetting_leaves_it():
     assert blocked(costmap, 0.05, 3.0)
 
 
+def test_nothing_is_cleared_beyond_the_lidars_range():
+    robot = replace(ROUND, lidar=ROUND.lidar._replace(range_max=3.5))
+    true = room(12.0, 6.0, (5.0, 2.0, 5.4, 4.0))
+    known = room(12.0, 6.0)
+    costmap = looked(true, (2.0, 3.0, 0.0), (1.0, 3.0, 0.0), known=known, robot=robot)
+    assert blocked(costmap, 5.0, 3.0)  # seen from 3 m, out of range from 4 m
+
+
+def test_readings_mean_for_others_what_they_mean_for_the_navigator():
+    """A declared value for no return clears, the robot's own body is no obstacle, nothing is a fault."""
+    lidar = ROUND.lidar._replace(nothing=(math.nan,))
+    controller = PurePursuit(room(12.0, 6.0), replace(ROUND, lidar=lidar), NavigatorConfig())
+    controller.set_goal(Goal(10.0, 3.0))
+    ranges, angles = np.full(360, np.nan, np.float32), (-math.pi, math.tau / 360, 0.1, 6.0)
+    ranges[:4] = 2.0
+    state = RobotState(0.0, Pose2D(3.0, 3.0, 0.0), Twist(0.0, 0.0))
+    controller.command(state, LaserScan(0.0, ranges, *angles))
+    assert blocked(controller.costmap, 1.0, 2.96)
+    ranges[:4], ranges[180] = np.nan, 0.2  # its own body
+    controller.command(state._replace(stamp=0.1), LaserScan(0.1, ranges, *angles))
+    assert controller.status.state == "following"
+    assert not blocked(controller.costmap, 1.0, 2.96)
+    assert not blocked(controller.costmap, 3.2, 3.0)
+
+
 def test_nan_and_blind_ranges_clear_and_mark_nothing():
     costmap = looked(room(8.0, 6.0, (3.6, 2.0, 4.0, 4.0)), (1.5, 3.0, 0.0))
     before = costmap.blocked.copy()

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from dynastar.bench.statistics import (
     bootstrap,
     holm,
+    lost_and_gained,
     mcnemar,
     pairs_needed,
     succeeded,
@@ -152,3 +153,14 @@ def test_totals_count_missions() -> None:
 )
 def test_pairs_needed_are_those_of_published_examples(counts, needed):
     assert pairs_needed(*counts) == needed
+
+
+def test_repeats_of_a_mission_are_one_mission():
+    """Of mission 3 all five repeats are lost, of 4 as many are lost as gained, of 5 more gained."""
+    outcomes = {3: ("aaaaa", "bbbbb"), 4: ("aabb", "bbaa"), 5: ("abb", "aab"), 6: ("a", "a")}
+    pairs = [
+        tuple({"number": number, "outcome": {"a": "arrived", "b": "blocked"}[one]} for one in two)
+        for number, rows in outcomes.items()
+        for two in zip(*rows, strict=True)
+    ]
+    assert lost_and_gained(pairs) == ([3], [5])

@@ -2,10 +2,12 @@ import json
 
 import numpy as np
 import pytest
+from cv2 import integral
 
 from dynastar.bench import table1
 from dynastar.bench.families import KINDS, Map, draw
 from dynastar.cli import main
+from dynastar.planning import search
 from naive import shortest
 
 PINNED = {
@@ -69,3 +71,15 @@ def test_the_command_makes_the_table_and_goes_on_where_it_was(tmp_path, capsys):
     assert json.loads((tmp_path / "sum.json").read_text())["maps"] == 8
     assert set(lines) < set((out / "table1.jsonl").read_text().splitlines())
     assert main(["paper", "table1", "--json-out", str(tmp_path / "no" / "x")]) == 2
+
+
+def test_what_only_one_arm_needs_is_prepared_in_its_time(monkeypatch):
+    counted = []
+    monkeypatch.setattr(
+        search.cv2, "integral", lambda *a, **b: counted.append(1) or integral(*a, **b)
+    )
+    drawn = next(made for n in range(20) if (made := draw("random", n)) is not None)
+    grid, (algorithm, terms) = search.SearchGrid(drawn.occupied), table1.SEARCHES["improved"]
+    for _ in range(3):
+        table1.searched(grid, drawn, algorithm, terms)
+    assert len(counted) == 3

@@ -128,3 +128,17 @@ def test_what_no_file_can_hold_is_refused_and_nothing_is_written(tmp_path):
     with pytest.raises(ScenarioError, match="at most 262144 are read"):
         io.save_scenario(replace(made, movers=(long,)), tmp_path)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_movers_who_walked_before_the_start_and_those_with_one_key_come_back(tmp_path):
+    made = io.load_scenario(SCENES["u_trap"])
+    begun = Mover(0.2, np.array([-1.5, 2.0]), np.array([[3.0, 3.0], [5.0, 3.0]]), "loop")
+    stands = Mover(0.2, np.array([0.0]), np.array([[4.0, 4.0]]), "back_and_forth")
+    given = replace(made, movers=(begun, stands))
+    read = io.load_scenario(io.save_scenario(given, tmp_path))
+    for time in (0.0, 1.0, 7.3):
+        places = (Movers(one.movers).at(time) for one in (given, read))
+        np.testing.assert_allclose(*places)
+    gone = replace(stands, after="vanish")
+    with pytest.raises(ScenarioError, match=r"a mover at \(4, 4\) is there for no time"):
+        io.save_scenario(replace(made, movers=(gone,)), tmp_path / "other")

@@ -1,5 +1,6 @@
 import json
 import math
+import re
 import time
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
@@ -124,6 +125,27 @@ def test_time_goes_on_until_the_robot_rests_after_its_arrival():
     assert episode.outcome == "arrived"
     assert first == pytest.approx(4.0)
     assert episode.trajectory.times[-1] == pytest.approx(9.0, abs=0.11)
+
+
+@pytest.mark.parametrize(
+    ("goals", "words"),
+    [
+        ((Goal(12.0, 5.0, 0.2),), ""),  # 0.25 rad are allowed
+        ((Goal(12.0, 5.0, 1.0),), "said 'arrived' 0.2. m and 1.00 rad away from the goal"),
+        ((Goal(8.0, 5.0), Goal(12.0, 5.0)), ""),  # passed on the way
+        ((Goal(8.0, 8.0), Goal(12.0, 5.0)), "away from a goal before the last"),
+        ((Goal(8.0, 5.0), Goal(6.0, 5.0), Goal(12.0, 5.0)), "a goal before the last"),
+    ],
+)
+def test_an_arrival_has_the_last_goals_heading_and_all_goals_in_order(goals, words):
+    class LastOnly(Straight):
+        def set_goal(self, given):
+            self.goals = list(given)[-1:]
+
+    made = scenario(goals=goals, heading_tolerance=0.25)
+    episode = run(made, navigator=LastOnly)
+    assert episode.outcome == ("blocked" if words else "arrived")
+    assert re.search(words, episode.reason)
 
 
 def test_what_hardware_does_is_driven_and_written_down():

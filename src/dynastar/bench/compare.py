@@ -114,10 +114,10 @@ def compare_suite(name: str, first: Result, second: Result) -> dict[str, Any]:
         if a["outcome"] != b["outcome"]
     ]
     lost, gained = lost_and_gained(pairs)
-    p = mcnemar(len(lost), len(gained))
+    p, missions = mcnemar(len(lost), len(gained)), len({a["number"] for a, _ in pairs})
     time, length = _difference(pairs, "time"), _difference(pairs, "length")
     return {
-        "missions": len(pairs),
+        "missions": missions,
         "conditions": {
             key: [a, b]
             for key in CONDITIONS
@@ -131,7 +131,7 @@ def compare_suite(name: str, first: Result, second: Result) -> dict[str, Any]:
         "p_success": p,
         "time": time,
         "length": length,
-        "verdict": verdict((len(lost), len(gained), len(pairs)), p, time),
+        "verdict": verdict((len(lost), len(gained), missions), p, time),
     }
 
 
@@ -190,14 +190,16 @@ def _words(mission: tuple[int, int, int]) -> str:
 
 
 def _difference(pairs: Sequence[tuple[Row, Row]], key: str) -> dict[str, Any]:
-    """Second less first, where both arrived: mean, its 95 % interval, and the number of pairs."""
-    differences = [
-        b[key] - a[key]
-        for a, b in pairs
-        if a["outcome"] == b["outcome"] == "arrived"
-        and a.get(key) is not None
-        and b.get(key) is not None
-    ]
+    """Second less first, where both arrived: mean, its 95 % interval, and the number of pairs.
+
+    Of the repeats of a mission their mean counts.
+    """
+    found: dict[int, list[float]] = {}
+    for a, b in pairs:
+        both = a["outcome"] == b["outcome"] == "arrived"
+        if both and a.get(key) is not None and b.get(key) is not None:
+            found.setdefault(a["number"], []).append(b[key] - a[key])
+    differences = [sum(one) / len(one) for one in found.values()]
     mean = sum(differences) / len(differences) if differences else None
     return {"mean": mean, "interval": bootstrap(differences), "pairs": len(differences)}
 

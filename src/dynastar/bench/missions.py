@@ -70,7 +70,8 @@ class Suite(Protocol):
         Read for the totals: ``outcome`` ("arrived", "timeout", ...), ``length`` (m), ``time`` (s),
         ``contacts_moving`` and ``contacts_resting`` (0 or 1), ``reason``, ``group``, ``score``,
         ``time_ratio``, ``tick_ms_median``, ``tick_ms_p99``, ``limited``. Called in a worker
-        process; ``repeat`` counts from 0, and so ``options.seed + repeat`` is its seed.
+        process; ``repeat`` counts from 0. The noise of a mission has the seed of its scenario (its number,
+        as a rule) plus ``options.seed + repeat``.
         """
 
 

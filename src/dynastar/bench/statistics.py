@@ -42,16 +42,17 @@ def mcnemar(only_first: int, only_second: int) -> float:
 
 
 def lost_and_gained(pairs: Iterable[tuple[Row, Row]]) -> tuple[list[int], list[int]]:
-    """Numbers of the missions that only the first, and only the second, of two results succeeded in.
+    """Numbers of the missions in which the first, and the second, of two results succeeded more often.
 
-    A pair is the rows of one mission, as ``mcnemar`` compares them.
+    A pair is the rows of one run, as ``mcnemar`` compares them. The repeats of a mission are no missions of
+    their own, and count together.
     """
-    lost: list[int] = []
-    gained: list[int] = []
+    more: dict[int, int] = {}  # by number, the runs in which only the second succeeded
     for first, second in pairs:
-        if succeeded(first) != succeeded(second):
-            (lost if succeeded(first) else gained).append(first["number"])
-    return lost, gained
+        number = first["number"]
+        more[number] = more.get(number, 0) + succeeded(second) - succeeded(first)
+    lost = [number for number, by in more.items() if by < 0]
+    return lost, [number for number, by in more.items() if by > 0]
 
 
 def holm(p_values: Sequence[float]) -> list[float]:

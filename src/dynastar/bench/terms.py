@@ -9,7 +9,7 @@ from dynastar.bench.arms import PLAIN, TERMS
 from dynastar.bench.families import KINDS, Map, draw
 from dynastar.bench.pairs import median_in_words
 from dynastar.bench.rows import collect
-from dynastar.bench.table1 import numbers, timed
+from dynastar.bench.table1 import numbers, searched, timed
 from dynastar.bench.tables import Cell, Table, spread_of
 from dynastar.bench.versions import code_version
 from dynastar.planning import HeuristicConfig, SearchGrid
@@ -47,7 +47,7 @@ def measure(drawn: Map) -> Row:
     grid = SearchGrid(drawn.occupied)
     row: Row = {"kind": drawn.kind, "number": drawn.number}
     searches = {
-        arm: partial(grid.search, drawn.start, drawn.goal, algorithm, terms)
+        arm: partial(searched, grid, drawn, algorithm, terms)
         for arm, (algorithm, terms) in ARMS.items()
     }
     for arm, (found, seconds) in timed(searches).items():

@@ -14,6 +14,7 @@ Metres = Annotated[float, Field("a coordinate", "m", -1e6, 1e6)]
 _Corners = tuple[tuple[Metres, Metres], ...]
 _Size = Annotated[float, Field("a size", "m", 1e-3, 1e4)]
 _Seconds = Annotated[float, Field("a time", "s", 0.0, 1e6)]
+_TrackTime = Annotated[float, Field("a time", "s", -1e6, 1e6)]
 
 
 class ScenarioTable(NamedTuple):
@@ -114,7 +115,7 @@ class MoverTable(NamedTuple):
         tuple[Metres, Metres] | None, Field("x and y of the start of a straight motion", "m")
     ] = None
     track: Annotated[
-        tuple[tuple[_Seconds, Metres, Metres], ...] | None,
+        tuple[tuple[_TrackTime, Metres, Metres], ...] | None,
         Field("time (s), x and y (m) of each keyframe; linear between them"),
     ] = None
     speed: Annotated[float | None, Field("speed between waypoints", "m/s", 1e-3, 50.0)] = None

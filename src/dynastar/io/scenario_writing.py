@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from dynastar.errors import ScenarioError
 from dynastar.extras import require
+from dynastar.geometry import place
 from dynastar.grid import OccupancyGrid
 from dynastar.io.files import MAX_TABLE_BYTES
 from dynastar.io.maps import save_map
@@ -119,7 +120,14 @@ def _place(x: float, y: float, heading: float | None) -> dict[str, float]:
 
 def _mover(mover: Mover) -> dict[str, Any]:
     track = np.column_stack([mover.times, mover.points])
-    return {"radius": float(mover.radius), "after": mover.after, "track": track.tolist()}
+    stays = len(track) == 1 and mover.after != "vanish"  # whatever it would do after its last key
+    if len(track) == 1 and not stays:
+        x, y = mover.points[0]
+        raise ScenarioError(
+            f"a mover at {place(x, y)} is there for no time: expected two keys or more"
+        )
+    after = "stay" if stays else mover.after
+    return {"radius": float(mover.radius), "after": after, "track": track.tolist()}
 
 
 def _plain(values: Mapping[str, Any]) -> dict[str, Any]:

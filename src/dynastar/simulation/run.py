@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 from dynastar.episode import Episode
 from dynastar.errors import InputError, ScenarioError, StartOccupied
-from dynastar.geometry import Pose2D, Twist
+from dynastar.geometry import Pose2D, Twist, wrap_angle
 from dynastar.planning.explain import explained, misfit
 from dynastar.robot import stopping_time
 from dynastar.simulation.fault_injector import FaultInjector
@@ -190,14 +190,15 @@ class Referee:
     """Decides when a mission is over, and what it came to, by the truth."""
 
     def __init__(self, scenario: Scenario, config: Any) -> None:
-        self._goal, self._limit = scenario.goals[-1], scenario.time_limit
-        bound = scenario.noise.pose_bound
+        self._goals, self._limit = list(scenario.goals), scenario.time_limit
+        noise, bound = scenario.noise, scenario.noise.pose_bound
         self._tolerance = config.goal_tolerance + math.hypot(bound, bound) + 1e-6
+        self._turn_tolerance = config.heading_tolerance + noise.heading_bound + 1e-6
         self._grace = GRACE + scenario.latency
         self._limits = scenario.robot.limits
         self._final = ""
         self._until = math.inf
-        self._nearest = math.inf
+        self._was_there = False  # within the tolerances of the last goal, since the last word
         self._lost_since: float | None = None
 
     def touched(self, world: World) -> tuple[str, str] | None:
@@ -212,6 +213,8 @@ class Referee:
         """(outcome, reason) once the mission is over, seen after each command."""
         if world.contact:
             return self.touched(world)
+        if len(self._goals) > 1 and self._gap(world) <= self._tolerance:
+            self._goals.pop(0)
         state, reason = str(status.state), str(status.reason)
         if state in ("arrived", "blocked"):
             return self._last_word(world, state, reason)
@@ -228,14 +231,27 @@ class Referee:
     def _last_word(self, world: World, state: str, reason: str) -> tuple[str, str] | None:
         """The navigator has finished: the robot is let come to rest, and the word is checked."""
         if state != self._final:
-            self._final, self._nearest = state, math.inf
+            self._final, self._was_there = state, False
             self._until = world.time + self._grace + stopping_time(world.twist, self._limits)
-        gap = math.hypot(self._goal.x - world.pose.x, self._goal.y - world.pose.y)
-        self._nearest = min(self._nearest, gap)
+        gap, off = self._gap(world), self._off(world)
+        is_last = len(self._goals) == 1
+        is_there = is_last and gap <= self._tolerance and off <= self._turn_tolerance
+        self._was_there = self._was_there or is_there
         if not world.resting:
             if world.time < self._until:
                 return None
             return "timeout", f"said '{state}' and did not come to rest in {self._grace:g} s more"
-        if state == "arrived" and self._nearest > self._tolerance:
-            return "blocked", f"said 'arrived' {gap:.2f} m away from the goal"
+        if state == "arrived" and not self._was_there:
+            which = "the goal" if is_last else "a goal before the last"
+            turned = f" and {off:.2f} rad" if is_last and off > self._turn_tolerance else ""
+            return "blocked", f"said 'arrived' {gap:.2f} m{turned} away from {which}"
         return state, reason
+
+    def _gap(self, world: World) -> float:
+        """Metres from the true place to the next goal."""
+        return math.dist(self._goals[0][:2], world.pose[:2])
+
+    def _off(self, world: World) -> float:
+        """The angle (rad) that is left to the heading of the next goal; 0 if it has none."""
+        heading = self._goals[0].heading
+        return 0.0 if heading is None else abs(wrap_angle(heading - world.pose.theta))

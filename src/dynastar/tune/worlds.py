@@ -146,6 +146,7 @@ def _random(robot: Robot, seed: int, number: int) -> tuple[Scenario, bool] | str
         start=start,
         goals=(Goal(*world.goal),),
         obstacles=world.obstacles,
+        seed=number,
         goal_tolerance=random_worlds.GOAL_TOLERANCE,
         time_limit=round(seconds, 1),
     ), world.reachable
@@ -174,6 +175,7 @@ def _among_people(robot: Robot, seed: int, number: int) -> tuple[Scenario, bool]
         goals=(Goal(*site.goal),),
         movers=made.walkers,
         attention=people.ATTENTION,
+        seed=number,
         goal_tolerance=people.GOAL_TOLERANCE,
         time_limit=made.seconds,
     ), True

@@ -16,6 +16,7 @@ from dynastar.errors import InputError, PlanningError
 from dynastar.geometry import Goal, Pose2D, Twist, wrap_angle
 from dynastar.grid import OccupancyGrid
 from dynastar.navigator import RobotState
+from dynastar.navigator.readings import Readings
 from dynastar.robot import Robot, arc, slew
 from dynastar.scan import LaserScan
 
@@ -41,6 +42,7 @@ class PathController(ABC):
     def __init__(self, grid: OccupancyGrid, robot: Robot, config: Any) -> None:
         self.robot, self.config = robot, config
         self.discs = covering(robot.footprint)
+        self._readings = Readings(robot)
         self._goals: list[Goal] = []
         self._poses: deque[RobotState] = deque(maxlen=HISTORY)
         self._scan_stamp = -math.inf
@@ -78,6 +80,8 @@ class PathController(ABC):
     def command(self, state: RobotState, scan: LaserScan | None) -> Twist:
         """The twist to drive from now on."""
         self.status = replace(self.status, limited_by="")
+        if scan is not None and scan.fault() is None:
+            scan = self._readings.interpreted(scan)
         fault = self._fault(state, scan)
         if fault is None and scan is not None:
             self._see(state, scan)

@@ -49,7 +49,8 @@ class Costmap:
         ranges = scan.ranges.astype(np.float64)
         known = ~np.isnan(ranges) & (ranges >= max(scan.range_min, 1e-6))
         hit = known & (ranges <= min(REACH, scan.range_max - 1e-3))
-        clear = np.where(known, np.minimum(ranges - self.resolution, REACH), 0.0).clip(0.0)
+        reach = min(REACH, scan.range_max)
+        clear = np.where(known, np.minimum(ranges - self.resolution, reach), 0.0).clip(0.0)
         angles = scan.angles + sensor.theta
         swept = self._swept(sensor, angles, clear)
         ends = self._cells(sensor, angles[hit], ranges[hit])

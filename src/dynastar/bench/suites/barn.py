@@ -67,6 +67,7 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
         start=START,
         goals=(Goal(*GOAL),),
         obstacles=tuple(disc_polygon(*map(float, cylinder)) for cylinder in cylinders),
+        seed=mission.number,
         goal_tolerance=ARRIVED_WITHIN,
         time_limit=TIME_LIMIT,
     )

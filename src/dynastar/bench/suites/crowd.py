@@ -95,6 +95,7 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
         goals=(Goal(*goal),),
         movers=pedestrians(place.recording, begin, begin + TIME_LIMIT),
         attention=ATTENTION,
+        seed=mission.number,
         goal_tolerance=GOAL_TOLERANCE,
         time_limit=TIME_LIMIT,
     )

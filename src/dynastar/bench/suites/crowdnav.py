@@ -125,6 +125,7 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
         goals=(Goal(*ENDS[1]),),
         noise=Noise() if options.ideal else Noise(driven.RANGE_NOISE),
         latency=0.0,
+        seed=mission.number,
         goal_tolerance=RADIUS,
         time_limit=TIME_LIMIT,
         navigator={"period": STEP, "hidden_speed": 0.0},

@@ -91,6 +91,7 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
             Mover(data.radius, keys[:, 0] - start_time, keys[:, 1:], "loop")
             for keys in data.worlds[world].tracks
         ),
+        seed=mission.number,
         goal_tolerance=ARRIVED_WITHIN,
         time_limit=TIME_LIMIT,
     )

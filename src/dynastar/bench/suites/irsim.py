@@ -104,6 +104,7 @@ def _scenario(mission: Mission, options: Options, env: Any) -> Scenario:
         start=START,
         goals=(Goal(*GOAL),),
         obstacles=tuple(np.array(thing.vertices.T) for thing in env.obstacle_list if thing.static),
+        seed=mission.number,
         goal_tolerance=TOLERANCE,
         time_limit=TIME_LIMIT,
         navigator={"period": STEP, "range_error": 0.01 if options.ideal else DEVIATIONS * NOISE},

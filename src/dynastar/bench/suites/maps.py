@@ -60,6 +60,7 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
         goals=(Goal(*world.goal),),
         obstacles=world.boxes,
         movers=world.walkers,
+        seed=mission.number,
         goal_tolerance=GOAL_TOLERANCE,
         time_limit=round(PATIENCE * world.length / MAPS_ROBOT.limits.v_max + EXTRA_TIME, 1),
     )

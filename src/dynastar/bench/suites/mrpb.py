@@ -65,6 +65,7 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
         movers=tuple(
             Mover(WALKER_RADIUS, keys[:, 0], keys[:, 1:], "loop") for keys in test.walkers
         ),
+        seed=mission.number,
         goal_tolerance=GOAL_TOLERANCE,
         heading_tolerance=HEADING_TOLERANCE,
         time_limit=TIME_LIMIT,

@@ -111,6 +111,7 @@ def _scenario(mission: Mission, options: Options, world: Any) -> Scenario:
         robot=robot_of(agent.behavior, lidar, ACCEL, OMEGA_ACCEL),
         start=(x, y, agent.orientation),
         goals=(goal,),
+        seed=mission.number,
         goal_tolerance=SCENARIOS[name].tolerance,
         time_limit=TIME_LIMIT,
         navigator={"period": STEP, "range_error": 0.01 if options.ideal else 3.0 * DEVIATION},

@@ -100,6 +100,7 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
             movers=made.walkers,
             attention=ATTENTION,
             crowd=made.crowd,
+            seed=mission.number,
             goal_tolerance=GOAL_TOLERANCE,
             time_limit=made.seconds,
         ),
@@ -138,7 +139,7 @@ def make(seed: int, number: int) -> Made | str:
 def judge(seed: int, number: int) -> str:
     """Why the rules leave out the world of a number, or "" if they keep it."""
     made = make(seed, number)
-    return made if isinstance(made, str) else judged(made, seed)
+    return made if isinstance(made, str) else judged(made, seed + number)
 
 
 def judged(made: Made, seed: int = 0) -> str:

@@ -77,7 +77,8 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
     """The mission of a number; raises DataError for one that ``leave_out`` leaves out."""
     del repeat
     made = _made(mission, options)
-    latency = driven.PERIOD * math.ceil((LATENCY + made.body.response(made.loaded)) / driven.PERIOD)
+    late = 0.0 if options.ideal else LATENCY
+    latency = driven.PERIOD * math.ceil((late + made.body.response(made.loaded)) / driven.PERIOD)
     return Scenario(
         name=f"physics {mission.number}: {made.robot.name}, {name_of(made.place)}",
         grid=draw_map(*made.place),
@@ -86,7 +87,8 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
         goals=(made.world.goal,),
         obstacles=made.world.obstacles,
         noise=Noise() if options.ideal else Noise(0.01, 0.01),
-        latency=LATENCY,
+        latency=late,
+        seed=mission.number,
         goal_tolerance=GOAL_TOLERANCE,
         time_limit=round(
             PATIENCE * least_time(made.world.length, made.robot.limits) + EXTRA_TIME, 1

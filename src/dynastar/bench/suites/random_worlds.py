@@ -89,6 +89,7 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
             start=made.start,
             goals=(Goal(*made.world.goal),),
             obstacles=made.world.obstacles,
+            seed=mission.number,
             goal_tolerance=GOAL_TOLERANCE,
             time_limit=round(PATIENCE * least_time(made.length, made.robot.limits) + EXTRA_TIME, 1),
         ),

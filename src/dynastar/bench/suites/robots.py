@@ -74,6 +74,7 @@ def scenario(mission: Mission, options: Options, repeat: int) -> Scenario:
         start=world.start,
         goals=(world.goal,),
         obstacles=world.obstacles,
+        seed=mission.number,
         goal_tolerance=GOAL_TOLERANCE,
         time_limit=round(PATIENCE * least_time(world.length, robot.limits) + EXTRA_TIME, 1),
     )
