@@ -19,10 +19,12 @@ def odometry(k):
     return message
 
 
-def foreign(folder, topics=("/robot/map", "/robot/front/scan", "/robot/odom", "/goal_pose")):
+def foreign(
+    folder, topics=("/robot/map", "/robot/front/scan", "/robot/odom", "/goal_pose"), late=0.0
+):
     """A recording by something else: no requests, wall-clock receive times, other names.
 
-    A topic of None is left out, map or goal.
+    A topic of None is left out, map or goal. Scans come ``late`` (s) after their stamps.
     """
     names = dict(zip(("map", "scan", "odom", "goal"), topics, strict=True))
     values = np.zeros((100, 100), np.int8)
@@ -40,7 +42,7 @@ def foreign(folder, topics=("/robot/map", "/robot/front/scan", "/robot/odom", "/
             bag.write(names["odom"], ODOMETRY, wall + time, message)
             scan = make(
                 "sensor_msgs/msg/LaserScan",
-                header=OUT.header("laser", time),
+                header=OUT.header("laser", max(time - late, 0.0)),
                 angle_increment=math.tau / 360,
                 range_min=0.12,
                 range_max=3.5,

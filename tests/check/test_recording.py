@@ -35,6 +35,7 @@ class Made:
     mount: Pose2D | None = Pose2D(0.0, 0.0, 0.0)
     clock: float = 0.0
     odd: str = ""  # one message that cannot be used
+    rear: list[float] = field(default_factory=list)  # stamps of a second lidar
 
     def speed(self, time: float) -> float:
         """Commanded speed, m/s."""
@@ -43,6 +44,7 @@ class Made:
     def write(self, folder, topics=("/scan", "/odom", "/cmd_vel")):
         """Writes the recording and returns its folder."""
         events = [(t, "scan") for t in self.scans] + [(t, "odom") for t in self.odometry]
+        events += [(t, "rear") for t in self.rear]
         events.sort(key=lambda event: event[0])
         with BagWriter(folder) as bag:
             if self.mount is not None:
@@ -50,8 +52,9 @@ class Made:
                 bag.write("/tf_static", "tf2_msgs/msg/TFMessage", self.clock, carried)
             for time, kind in events:
                 at = self.clock + time + self.age
-                if kind == "scan":
-                    bag.write(topics[0], "sensor_msgs/msg/LaserScan", at, self._scan(time))
+                if kind in ("scan", "rear"):
+                    frame = "laser" if kind == "scan" else "rear"
+                    bag.write(topics[0], "sensor_msgs/msg/LaserScan", at, self._scan(time, frame))
                     continue
                 twist = Twist(self.speed(time - self.follows_after), 0.0)
                 message = OUT.odometry(Pose2D(0.1 * time, 0.0, 0.0), twist, FRAMES, time)
@@ -75,12 +78,12 @@ class Made:
             empty.ranges = np.empty(0, np.float32)
             bag.write("/scan", "sensor_msgs/msg/LaserScan", 9.0, empty)
 
-    def _scan(self, time):
+    def _scan(self, time, frame="laser"):
         ranges = np.full(self.beams, 4.0, np.float32)
         ranges[: self.beams // 2] = self.reading
         return make(
             "sensor_msgs/msg/LaserScan",
-            header=OUT.header("laser", time),
+            header=OUT.header(frame, time),
             angle_min=-math.pi,
             angle_increment=math.tau / self.beams,
             range_min=0.1,
@@ -102,6 +105,19 @@ def test_nothing_is_wrong_with_a_recording_of_what_is_declared(tmp_path):
     assert found["recorded scans"].values["median_gap"] == pytest.approx(0.1)
     assert found["recorded stamps"].values["scans_age"] == pytest.approx(0.01, abs=1e-3)
     assert found["recorded readings"].values["beams"] == 360
+
+
+@pytest.mark.parametrize("apart", [0.0, 0.02])
+def test_two_lidars_are_two_streams(tmp_path, apart):
+    found = findings(Made(rear=[0.1 * k + apart for k in range(80)]).write(tmp_path / "bag"))
+    assert [one.words() for one in found.values() if one.level != "ok"] == []
+    assert found["recorded scans"].values["median_gap"] == pytest.approx(0.1)
+
+
+def test_a_lidar_that_stops_while_another_goes_on_is_found(tmp_path):
+    found = findings(Made(rear=[0.1 * k for k in range(11)]).write(tmp_path / "bag"))
+    assert found["recorded ranges"].level == "warning"
+    assert "the lidar 'rear' is silent from 1.0 s on" in found["recorded ranges"].text.lower()
 
 
 def test_beams_that_are_further_apart_than_declared_are_found(tmp_path):

@@ -3,6 +3,7 @@
 import base64
 import gzip
 import json
+import math
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -15,7 +16,7 @@ from dynastar.cli import main
 from dynastar.dwa.dwa import TERMS
 from dynastar.errors import EpisodeError, InputError
 from dynastar.page import report_html
-from dynastar.page.packing import runs, static
+from dynastar.page.packing import packed, runs, static
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 KINDS = {"int8": "i1", "uint8": "u1", "uint16": "<u2", "int32": "<i4", "float32": "<f4"}
@@ -76,6 +77,15 @@ def test_a_notebook_shows_the_replay(episode):
     html = episode._repr_html_()
     assert html.startswith("<iframe srcdoc=")
     assert html.count("<") == 2
+
+
+@pytest.mark.parametrize("far", [0.0, 5000.0, 600_000.0, -600_000.0])
+def test_places_are_exact_wherever_the_map_lies(far):
+    places = np.array([[far + 123.4, far - 0.37], [math.nan, math.inf]])
+    data = base64.b64decode(packed(places, np.float32)["data"])
+    found = np.frombuffer(data, "<f4").reshape(2, 2)
+    finest = max(0.003, float(np.spacing(np.float32(abs(far)))))
+    np.testing.assert_allclose(found, places, atol=finest, rtol=0.0)
 
 
 def test_explored_cells_are_written_as_runs():

@@ -88,8 +88,10 @@ def test_masks_are_part_of_a_recording(feature, tmp_path):
     reader.close()
 
 
-def test_recordings_of_others_are_ticked_at_each_scan(tmp_path):
-    foreign(tmp_path / "bag")
+@pytest.mark.parametrize("late", [0.0, 0.08])
+def test_recordings_of_others_are_ticked_at_each_scan(tmp_path, late):
+    """Or at the newest odometry, whose pose the robot has by then."""
+    foreign(tmp_path / "bag", late=late)
     with pytest.raises(DataError, match="name its robot with --robot"):
         replay(tmp_path / "bag")
     found = replay(tmp_path / "bag", Overrides(ROBOTS["turtlebot3_burger"]))
@@ -137,6 +139,13 @@ def test_map_and_goals_can_be_given_instead_of_recorded_ones(tmp_path, capsys, m
     for goal in (["4"], ["1", "2", "3", "4"]):
         assert main([*words, "--goal", *goal]) == 2
         assert "expected X Y, or X Y HEADING" in capsys.readouterr().err
+
+
+def test_a_recording_by_dynastar_is_ticked_by_its_commands_of_whatever_name(office):
+    with pytest.raises(DataError, match="no topic 'cmd_vel' in it: give --topic cmd_vel=TOPIC"):
+        replay(office[0], remap={"cmd_vel": "base/velocity"})
+    again = replay(office[0], remap={"cmd_vel": "/cmd_vel"})
+    assert np.array_equal(again.commands, again.recorded)
 
 
 def test_goals_instead_of_those_of_a_recording_by_dynastar(office):

@@ -43,6 +43,7 @@ class Stream:
 class Recording:
     """A recording measured against a robot and its settings.
 
+    Of several lidars ``scans`` are those whose stamps rise worst, or that have the longest gap.
     ``beams``, ``fov``, ``range_min`` and ``range_max`` have a value for each scan. ``speeds`` (n, 2) are
     those of the odometry, m/s and rad/s. ``hints`` are what the navigator's status would have said of the
     readings, ``latency`` (s) is set if commands clearly acted later than declared. ``mount`` is where the
@@ -90,9 +91,8 @@ class _Collected:
 
     robot: Robot
     config: NavigatorConfig
-    stamps: dict[str, list[tuple[float, float]]] = field(
-        default_factory=lambda: {"scan": [], "odom": []}
-    )
+    odometry: list[tuple[float, float]] = field(default_factory=list)  # stamps, and when recorded
+    lidars: dict[str, list[tuple[float, float]]] = field(default_factory=dict)  # the same, by frame
     scans: list[tuple[int, float, float, float]] = field(default_factory=list)
     speeds: list[Twist] = field(default_factory=list)
     commands: list[float] = field(default_factory=list)
@@ -117,9 +117,13 @@ class _Collected:
                 self._take_command(at, message)
             elif short in ("/tf", "/tf_static"):
                 self.transforms.add(message, static=short.endswith("static"))
+            elif short == "odom":
+                self._take_odometry(message)
+                self.odometry.append((seconds(message.header.stamp), at))
             else:
-                (self._take_odometry if short == "odom" else self._take_scan)(message)
-                self.stamps[short].append((seconds(message.header.stamp), at))
+                self._take_scan(message)
+                lidar = self.lidars.setdefault(message.header.frame_id, [])
+                lidar.append((seconds(message.header.stamp), at))
         except (
             InputError
         ) as error:  # as a robot's node does, which says so and drives by the others
@@ -171,25 +175,37 @@ class _Collected:
 
     def recording(self, path: str | Path) -> Recording:
         """What was collected; DataError if there are fewer than two scans or odometry messages."""
-        refused = refusals(self.refused)
-        for short, what in (("scan", "scans"), ("odom", "messages of odometry")):
-            if len(self.stamps[short]) < 2:
-                has = f"{path}: has {len(self.stamps[short])} {what}: expected 2 or more"
+        refused, lidars = refusals(self.refused), list(self.lidars.values())
+        most = max(map(len, lidars), default=0)
+        for count, what in ((most, "scans"), (len(self.odometry), "messages of odometry")):
+            if count < 2:
+                has = f"{path}: has {count} {what}: expected 2 or more"
                 raise DataError("; ".join([has, *refused]))
+        streams = [Stream(*np.array(lidar).T) for lidar in lidars if len(lidar) > 1]
         beams, fov, low, high = map(np.array, zip(*self.scans, strict=True))
         return Recording(
-            Stream(*np.array(self.stamps["scan"]).T),
-            Stream(*np.array(self.stamps["odom"]).T),
+            max(streams, key=lambda one: ((one.gaps <= 0.0).sum(), one.gaps.max())),
+            Stream(*np.array(self.odometry).T),
             np.array(self.commands),
             beams,
             fov,
             low,
             high,
             np.array(self.speeds),
-            (*self.hints, *refused),
+            (*self.hints, *self._silent(), *refused),
             self.latency,
             self._mount_nearest(),
         )
+
+    def _silent(self) -> list[str]:
+        """Which lidars have stopped, while another went on."""
+        last = {frame: lidar[-1][0] for frame, lidar in self.lidars.items()}
+        end, begin = max(last.values()), self.odometry[0][0]
+        return [
+            f"the lidar '{frame}' is silent from {stamp - begin:.1f} s on"
+            for frame, stamp in last.items()
+            if end - stamp > self.config.scan_age
+        ]
 
     def _mount_nearest(self) -> Pose2D | None:
         """The mount, of the lidars recorded, that is nearest to the declared one."""

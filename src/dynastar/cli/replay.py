@@ -86,7 +86,7 @@ def execute(arguments: argparse.Namespace) -> int:
     from dynastar.cli.compiling import prepare
     from dynastar.robot import ROBOTS
     from dynastar.ros.bridge import TAKES
-    from dynastar.ros.replay import Overrides, replay
+    from dynastar.ros.replay import COMMANDS, Overrides, replay
 
     robot = None if arguments.robot is None else choose(arguments.robot, ROBOTS, "robot")
     grid = None if arguments.map is None else io.load_map(arguments.map)
@@ -97,8 +97,10 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.preset is not None or settings:
         words = [arguments.preset, *arguments.set]
         name = " ".join(word for word in words if word is not None)
-        runs[name] = as_it_is._replace(preset=arguments.preset, settings=settings)
-    remap = topic_table(arguments.topic, [name.strip("/") for name in TAKES])
+        runs[f"preset {name}" if name in runs else name] = as_it_is._replace(
+            preset=arguments.preset, settings=settings
+        )
+    remap = topic_table(arguments.topic, [*(name.strip("/") for name in TAKES), COMMANDS])
     bag = Path(arguments.bag)
     folder = make_folder("--out", arguments.out or Path("out", f"replay-{bag.stem or 'bag'}"))
     prepare()

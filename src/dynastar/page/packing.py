@@ -11,6 +11,9 @@ import numpy.typing as npt
 
 from dynastar.grid import OccupancyGrid
 
+EXACT_FROM = 8.0  # m, from which on values are rounded to multiples of
+FINEST = 2.0**-12  # m
+
 
 def static(name: str) -> str:
     """The text of a file of the page."""
@@ -51,9 +54,15 @@ def packed(values: npt.NDArray[Any], kind: Any) -> dict[str, str]:
 
 
 def _rounded(array: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
-    """Values whose last bits are 0, which compress well: to about one part in 30000."""
+    """Values whose last bits are 0, which compress well: to about one part in 30000, or to 0.2 mm.
+
+    A place far from the map's origin is as exact as one near it.
+    """
     bits = array.view(np.uint32) & np.uint32(0xFFFFFF00)
-    return np.where(np.isfinite(array), bits.view(np.float32), array)
+    found = np.where(np.isfinite(array), bits.view(np.float32), array)
+    far = np.isfinite(array) & (np.abs(array) >= EXACT_FROM)
+    found[far] = np.round(array[far].astype(np.float64) / FINEST) * FINEST
+    return found
 
 
 def words(words: npt.NDArray[np.str_]) -> dict[str, Any]:

@@ -25,6 +25,8 @@ from dynastar.ros.middleware import make
 from dynastar.ros.publishing import PUBLISHES, StatusPublisher
 from dynastar.ros.settings import flat, nested
 
+LATE = 1.2  # periods after a command, from which on the next does not wait for a scan
+
 
 class NavigatorNode(DrivingNode):
     """Drives as ``Navigator.command`` says: at every scan, and by a timer where scans stay away."""
@@ -51,7 +53,7 @@ class NavigatorNode(DrivingNode):
         self._actions = self._serve()
         # The steady clock goes on when a simulator's clock does not.
         steady = Clock(clock_type=ClockType.STEADY_TIME)
-        late = 1.2 * self.parameters.config.period
+        late = LATE * self.parameters.config.period
         self._watchdog = self.create_timer(late, self._tick, clock=steady)
         self.add_on_set_parameters_callback(self._set_parameters)
         self.get_logger().info(f"{settings.robot}, preset {settings.preset}: waiting for a map")
@@ -110,6 +112,9 @@ class NavigatorNode(DrivingNode):
     # -- the loop ---------------------------------------------------------------------------------
 
     def _restart(self) -> None:
+        if self._bag is not None:
+            self.get_logger().warning("the clock went back: the recording ends here")
+            self._end_recording()
         self._request(restart="the clock went back")
         self._status.reset()
         self._ticked = -math.inf
@@ -205,6 +210,7 @@ class NavigatorNode(DrivingNode):
                 (goal.x, goal.y),
                 radius=self.parameters.robot.footprint.circumscribed,
                 unknown=self.parameters.config.unknown,
+                tolerance=float(request.tolerance),
             )
             response.plan = self._out.path(found.path.points, frame, self._clock_time())
         except DynastarError as error:
@@ -241,4 +247,6 @@ class NavigatorNode(DrivingNode):
         except DynastarError as error:
             return SetParametersResult(successful=False, reason=str(error))
         self.parameters.config = config
+        self._status.reset()  # a new navigator counts its plans anew
+        self._watchdog.timer_period_ns = round(1e9 * LATE * config.period)
         return SetParametersResult(successful=True)

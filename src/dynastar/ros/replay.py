@@ -147,6 +147,12 @@ def replay(
         topics = topics_of(bag, remap or {}, overrides.replaced)
         if REQUESTS not in topics and overrides.robot is None:
             raise DataError(f"{bag.path} is not by dynastar: name its robot with --robot")
+        if REQUESTS in topics and COMMANDS not in topics:  # which it is ticked by
+            have = ", ".join(sorted(bag.topics))
+            raise DataError(
+                f"{bag.path}: no topic '{COMMANDS}' in it: give --topic {COMMANDS}=TOPIC for one of "
+                f"another name; it has {have}"
+            )
         ticks = list(_ticks(bag, topics, overrides, progress))
     finally:
         bag.close()
@@ -232,7 +238,9 @@ def _ticks(
                 yield _ticked(bridge, at, twist_of(getattr(message, "twist", message)), refused)
                 refused = ""
             elif not ours and short == "scan":
-                yield _ticked(bridge, seconds(message.header.stamp), NOTHING, refused)
+                # Odometry that is newer than the scan has come before it, as on the robot.
+                now = max(seconds(message.header.stamp), bridge.localization.stamp)
+                yield _ticked(bridge, now, NOTHING, refused)
                 refused = ""
 
 

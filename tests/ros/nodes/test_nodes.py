@@ -89,6 +89,9 @@ def test_plans_parameters_and_another_map(office):
         pose.pose.position.x, pose.pose.position.y = x, y
         pose.pose.orientation = rotation_of(make, 0.0)
     assert len(office.call(GetPlan, "make_plan", request).plan.poses) > 5
+    request.goal.pose.position.x, request.tolerance = 39.97, 1.0  # in the wall
+    near = office.call(GetPlan, "make_plan", request).plan.poses[-1].pose.position
+    assert math.dist((near.x, near.y), (39.97, 22.6)) <= 1.0
     request.goal.pose.position.x = 500.0
     assert len(office.call(GetPlan, "make_plan", request).plan.poses) == 0
     good = office.set_parameter("dynastar", "dwa.horizon", type=3, double_value=3.0)
@@ -128,6 +131,20 @@ def test_a_clock_that_goes_back_drops_the_goal(client, room):
     client.send(4.5, 2.5)
     room.run(client, 1.0)
     assert client.drives()
+
+
+def test_a_recording_ends_where_the_clock_goes_back(client, room_of, tmp_path):
+    bag = tmp_path / "bag"
+    made = room_of("-p", "robot:=turtlebot3_burger", "-p", f"bag:={bag}")
+    made.run(client, 1.0)
+    client.send(4.5, 2.5)
+    made.run(client, 1.0)
+    made.time = 1.0
+    made.run(client, 1.0)
+    assert client.navigator.poll() is None
+    found = replay(bag)
+    assert np.array_equal(found.commands, found.recorded)
+    assert (np.diff(found.times) > 0.005).all()
 
 
 def test_a_clock_that_stands_still_brakes_it(client, room):
