@@ -159,8 +159,8 @@ def test_another_map_revives_who_lost_its_data_after_it_found_no_way():
 def test_data_that_come_back_after_the_end_are_no_reason_to_drive():
     drive = Drive(room())
     drive.tick()
-    drive.now += 1.0
     for _ in range(3):
+        drive.now += 0.4
         drive.navigator.command(drive.state, [])
     assert drive.status.state == "sensor_lost"
     assert drive.tick() == REST

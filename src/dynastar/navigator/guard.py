@@ -56,7 +56,7 @@ class Guard:
     and no map; with a ``grid``, its keep-out zones and speed limits count. Sensing, the declared
     errors and the check of a command are those of ``Navigator``.
 
-    Single-threaded; time is that of the stamps. ``filter`` never raises. ``robot`` may be a name in
+    Single-threaded, without a clock of its own; ``filter`` never raises. ``robot`` may be a name in
     ``ROBOTS``. Raises InputError if ``robot``, ``config`` or ``grid`` has the wrong type.
 
     The first command compiles the kernels, or loads them; ``dynastar.warm_up`` does that ahead.

@@ -31,7 +31,7 @@ class Mission:
         """Whether there is a goal to drive to."""
         return self.state not in OVER and bool(self.goals)
 
-    def goes_to(self, goals: Sequence[Goal]) -> bool:
+    def is_under_way_to(self, goals: Sequence[Goal]) -> bool:
         """Whether the mission is under way to just these goals."""
         return self.under_way and not self.is_blocked and list(goals) == self.goals
 

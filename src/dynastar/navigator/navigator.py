@@ -32,7 +32,7 @@ from dynastar.scan import LaserScan
 class Navigator:
     """Takes a robot to its goals: give it every state and scan, and drive as it says.
 
-    Single-threaded; time is that of the stamps. ``command`` never raises while driving: trouble is
+    Single-threaded, without a clock of its own; ``command`` never raises while driving: trouble is
     a braking twist and a ``status``. A ``planner`` takes the place of dynastar's own, ``robot`` may be
     a name in ``ROBOTS``. Raises InputError if ``grid``, ``robot`` or ``config`` has the wrong type.
 
@@ -167,8 +167,8 @@ class Navigator:
     def set_goal(self, goal: Sequence[float | None] | Sequence[Sequence[float | None]]) -> None:
         """Drive to one goal, or several in order: (x, y) metres and a heading in radians or None.
 
-        Tuples do as well as Goals. Those that it drives to already change nothing. Raises InputError for
-        a goal that is not valid.
+        Tuples do as well as Goals. The goals that are under way already change nothing. Raises InputError
+        for a goal that is not valid.
         """
         self._set_out(goals := as_goals(goal), "new goal" if goals else "no goal")
 
@@ -189,7 +189,7 @@ class Navigator:
         self._set_out([], "cancelled")
 
     def _set_out(self, goals: Sequence[Goal], reason: str, path: Path | None = None) -> None:
-        if self.mission.goes_to(goals) and self.route.goes_on(path):
+        if self.mission.is_under_way_to(goals) and self.route.continue_along(path):
             return
         self.mission.begin(goals, reason)
         self._start_over(path)

@@ -4,7 +4,6 @@ import math
 from collections import deque
 from collections.abc import Sequence
 from itertools import pairwise
-from time import monotonic
 
 from dynastar.geometry import Pose2D, interpolate, wrap_angle
 from dynastar.navigator.config import NavigatorConfig
@@ -31,8 +30,7 @@ class PoseHistory:
         self._states: deque[RobotState] = deque()
         self._was_there = False  # before the oldest state that is kept
         self._back: tuple[float, float] | None = None  # first and last stamp since time went back
-        self._repeated = 0  # how often the newest stamp was given again,
-        self._given_at = 0.0  # and since when by the machine's clock (s)
+        self._calls: deque[int] = deque()  # in which each of the states was given
 
     def fault(self, state: RobotState) -> str | None:
         """Describe why a state cannot be used, or None."""
@@ -53,16 +51,17 @@ class PoseHistory:
         return None
 
     def _repeats(self, stamp: float) -> bool:
-        """Whether the same stamp has been given for ``scan_age``, by the calls and by our clock.
+        """Whether one stamp has been given for longer than ``scan_age``.
 
-        A caller may ask more often than there is a state, or wait for long between two calls.
+        A call takes as long as those of the states before took by their stamps, so that a loop may be
+        faster than the odometry, and no longer than the declared period.
         """
         if not self._states or stamp > self._states[-1].stamp:
-            self._repeated, self._given_at = 0, monotonic()
             return False
-        self._repeated += 1
-        longest = self._config.scan_age
-        return self._repeated * self._config.period > longest < monotonic() - self._given_at
+        self._calls[-1] += 1
+        before, span = sum(self._calls) - self._calls[-1], stamp - self._states[0].stamp
+        a_call = min(self._config.period, span / before if before else math.inf)
+        return self._calls[-1] * a_call > self._config.scan_age
 
     @property
     def clock_is_another(self) -> bool:
@@ -77,12 +76,16 @@ class PoseHistory:
             self._was_there = max(map(abs, state.twist)) <= AT_REST
         if jumped:
             self._states.clear()
+            self._calls.clear()
             self._was_there = False
         elif self._states and self._states[-1].stamp == state.stamp:
             self._states.pop()
         self._states.append(state)
+        if len(self._calls) < len(self._states):
+            self._calls.append(1)
         while state.stamp - self._states[0].stamp > KEPT_FOR:
             self._states.popleft()
+            self._calls.popleft()
             self._was_there = False
         return jumped
 

@@ -68,8 +68,11 @@ class Route:
         self._planned = False  # for this goal
         self._unsure = False  # an exact search may find a shorter path
 
-    def goes_on(self, given: Path | None) -> bool:
-        """Go on to the same goal along the path that is ``given``, or False where the other is planned."""
+    def continue_along(self, given: Path | None) -> bool:
+        """Continue to the same goal, along the path that is ``given`` if that is followed.
+
+        False, and nothing is done, where one of the two paths is planned and the other given.
+        """
         if given is None or self.given is None:
             return given is self.given
         if not np.array_equal(given.points, self.given.points):
