@@ -144,7 +144,8 @@ def test_a_recording_ends_where_the_clock_goes_back(client, room_of, tmp_path):
     assert client.navigator.poll() is None
     found = replay(bag)
     assert np.array_equal(found.commands, found.recorded)
-    assert (np.diff(found.times) > 0.005).all()
+    times = found.times[found.times > 1.0]  # before the first message of the clock it is 0
+    assert (np.diff(times) > 0.005).all()
 
 
 def test_a_clock_that_stands_still_brakes_it(client, room):
