@@ -24,17 +24,24 @@ CART = Robot(
 )
 
 
-def drive(grid, robot, start, goal, *, latency=0.0, gain=1.0, period=0.1, seconds=60.0):
-    """A mission in a true world: the navigator, the world, and the radians turned in all."""
+def drive(
+    grid, robot, start, goal, *, latency=0.0, gain=1.0, least=0.0, declared=0.0, period=0.1, seconds=60.0
+):  # fmt: skip
+    """A mission in a true world, by a drive with a gain that does not turn slower than ``least``.
+
+    The navigator, the world, and the radians turned in all.
+    """
     grid = OccupancyGrid(grid.refined(2).values, 0.05)
     start = Pose2D(*start)
     world = World(Scenario("turn", grid, robot, tuple(start), (), latency=latency), start)
-    navigator, turned, theta = Navigator(grid, robot, NavigatorConfig()), 0.0, start.theta
+    navigator = Navigator(grid, robot, NavigatorConfig(latency=declared))
+    turned, theta = 0.0, start.theta
     navigator.set_goal(goal)
     while navigator.mission.under_way and world.time < seconds:
         state = RobotState(world.time, world.pose, world.twist)
         command = navigator.command(state, world.scan())
-        world.step(Twist(command.v, gain * command.omega), period)
+        omega = gain * command.omega if abs(command.omega) >= least else 0.0
+        world.step(Twist(command.v, omega), period)
         assert not world.contact
         turned += abs(math.remainder(world.pose.theta - theta, math.tau))
         theta = world.pose.theta
@@ -53,6 +60,17 @@ def test_the_robot_does_not_swing_though_its_drive_is_not_as_declared(name, late
     assert status.state == "arrived"
     assert abs(math.remainder(world.pose.theta - 2.5, math.tau)) < 0.15
     assert turned < 4.0
+
+
+@pytest.mark.parametrize("turn", [2.5, -1.0, 0.4])
+@pytest.mark.parametrize("declared", [0.0, 0.2, 0.4])
+def test_a_drive_that_does_not_turn_slowly_comes_to_the_heading_as_well(turn, declared):
+    status, world, _ = drive(
+        room(8.0, 5.0), ROBOTS["pioneer3dx"], (4.0, 2.5, 0.0), (4.0, 2.5, turn),
+        least=0.12, declared=declared, period=0.05, seconds=25.0,
+    )  # fmt: skip
+    assert status.state == "arrived", status.reason
+    assert abs(math.remainder(world.pose.theta - turn, math.tau)) < 0.15
 
 
 def test_a_long_robot_turns_the_long_way_round_where_the_short_one_is_shut():

@@ -8,13 +8,14 @@ from dynastar.navigator.config import NavigatorConfig
 from dynastar.robot import Limits
 
 GENTLE_BRAKING = 0.7  # of the braking limits, to turn to a heading or slow down for a speed limit
-TURNING = 0.1  # rad/s from which on the robot still turns
 
 
-def rest_place(pose: Pose2D, twist: Twist, limits: Limits) -> tuple[float, float]:
-    """Where a robot that brakes straight ahead comes to rest (x, y)."""
+def rest_pose(pose: Pose2D, twist: Twist, limits: Limits) -> Pose2D:
+    """Where a robot that brakes straight ahead, and in its turn, comes to rest."""
     stop = 0.5 * twist.v * abs(twist.v) / limits.v_brake
-    return pose.x + stop * math.cos(pose.theta), pose.y + stop * math.sin(pose.theta)
+    turn = 0.5 * twist.omega * abs(twist.omega) / limits.omega_brake
+    x, y, theta = pose
+    return Pose2D(x + stop * math.cos(theta), y + stop * math.sin(theta), theta + turn)
 
 
 def stays_near(
@@ -24,7 +25,7 @@ def stays_near(
 
     ``acting`` are pose and twist when a command given now acts.
     """
-    places = (now.x, now.y), rest_place(*acting, limits)
+    places = now[:2], rest_pose(*acting, limits)[:2]
     return all(math.dist(goal[:2], place) <= config.goal_tolerance for place in places)
 
 
@@ -36,5 +37,5 @@ def has_arrived(
         return False
     if goal.heading is None:
         return True
-    off = abs(wrap_angle(goal.heading - now.theta))
-    return abs(acting.twist.omega) <= TURNING and off <= config.heading_tolerance
+    headings = now.theta, rest_pose(*acting, limits).theta
+    return all(abs(wrap_angle(goal.heading - at)) <= config.heading_tolerance for at in headings)

@@ -9,7 +9,7 @@ from dynastar.errors import GoalObstructed, NoPath, PlanningError
 from dynastar.geometry import Goal, Pose2D
 from dynastar.guidance import PathTarget
 from dynastar.navigator.aligned import turned, turned_path, turned_pose
-from dynastar.navigator.arrival import rest_place
+from dynastar.navigator.arrival import rest_pose
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.planners import Planners
 from dynastar.navigator.status import RobotState
@@ -250,6 +250,6 @@ class Route:
         if not (sensed or isinstance(error, GoalObstructed)):
             return RouteEvent(blocked=str(error), error=error)
         if self.path is not None or self.error is None:
-            self._stand = Path(np.array([rest_place(state.pose, state.twist, self._limits)]))
+            self._stand = Path(np.array([rest_pose(state.pose, state.twist, self._limits)[:2]]))
         self.path, self.error = None, error
         return KEPT
