@@ -64,10 +64,15 @@ def test_the_robot_does_not_swing_though_its_drive_is_not_as_declared(name, late
 
 @pytest.mark.parametrize("turn", [2.5, -1.0, 0.4])
 @pytest.mark.parametrize("declared", [0.0, 0.2, 0.4])
-def test_a_drive_that_does_not_turn_slowly_comes_to_the_heading_as_well(turn, declared):
+@pytest.mark.parametrize(
+    ("least", "period"), [(0.12, 0.05), (0.12, 0.2), (0.25, 0.05), (0.25, 0.1)]
+)
+def test_a_drive_that_does_not_turn_slowly_comes_to_the_heading_as_well(
+    turn, declared, least, period
+):
     status, world, _ = drive(
         room(8.0, 5.0), ROBOTS["pioneer3dx"], (4.0, 2.5, 0.0), (4.0, 2.5, turn),
-        least=0.12, declared=declared, period=0.05, seconds=25.0,
+        least=least, declared=declared, period=period, seconds=30.0,
     )  # fmt: skip
     assert status.state == "arrived", status.reason
     assert abs(math.remainder(world.pose.theta - turn, math.tau)) < 0.15

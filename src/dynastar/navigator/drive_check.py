@@ -36,6 +36,11 @@ class DriveCheck:
         self._asked += command.v * self._period
         self._asked_turn += command.omega * self._period
 
+    @property
+    def turned_in_vain(self) -> float:
+        """The angle (rad) that commands have asked for since the robot moved last."""
+        return abs(self._asked_turn)
+
     def hints(self, poses: PoseHistory) -> list[str]:
         """What has been odd for some seconds."""
         found, declared = [], self._period

@@ -21,6 +21,7 @@ LOOK_PERIOD = 3.0  # s between two searches for a place to turn
 SPARES = 0.1, 0.05, 0.02, 0.0  # m beyond the margin: a place with as much room as there is
 ENOUGH = 0.25  # of the room at the place, with which the turn begins: the robot is not quite there
 STEADY = 0.25  # of a period's inverse, the largest turning rate over the angle left
+IN_VAIN = 0.5  # 1/s, a turning rate over the angle that was asked for and not turned
 NO_ROOM = "no room to turn to the goal's heading"
 
 
@@ -92,15 +93,19 @@ class LastTurn:
             mission.block(f"gave up: the goal's heading cannot be reached{why}")
 
 
-def turn_by(angle: float, short_by: float, twist: Twist, limits: Limits, period: float) -> Twist:
+def turn_by(
+    angle: float, short_by: float, twist: Twist, limits: Limits, period: float, in_vain: float = 0.0
+) -> Twist:
     """The command that turns on the spot by an angle (rad), slow enough to stop there.
 
     The rate falls in proportion to the angle that is left: a delay of a period or two that is not
-    declared, or a drive that turns too fast, does not make the robot swing. A drive that cannot turn so
-    slowly stops where that ends within ``short_by`` (rad), or nearer than after one more period.
+    declared, or a drive that turns too fast, does not make the robot swing. It grows with the angle that
+    was asked for ``in_vain`` (rad), as a drive may have a dead band. One that cannot turn so slowly, as
+    declared, stops where that ends within ``short_by`` (rad), or nearer than after one more period.
     """
     rate = math.sqrt(2.0 * GENTLE_BRAKING * limits.omega_brake * abs(angle))
-    rate = math.copysign(min(limits.omega_max, rate, abs(angle) * STEADY / period), angle)
+    steady = max(abs(angle) * STEADY / period, IN_VAIN * in_vain)
+    rate = math.copysign(min(limits.omega_max, rate, steady), angle)
     omega = slew(twist.omega, rate, limits.omega_accel, limits.omega_brake, period)
     if abs(omega) < limits.omega_least:
         omega, now = math.copysign(limits.omega_least, angle), twist.omega

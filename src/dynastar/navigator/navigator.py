@@ -288,7 +288,8 @@ class Navigator:
             if angle is not None:
                 driving.forget_manoeuvre()
                 period = self.sensing.poses.period
-                command = turn_by(angle, turn.short_by, twist, limits, period)
+                in_vain = self._commands.check.turned_in_vain
+                command = turn_by(angle, turn.short_by, twist, limits, period, in_vain)
                 return command if driving.window.admits(scene.around, stops, command) else None
             if not turn.finds_place(scene, rules, pose, goal, state.stamp):
                 return None
