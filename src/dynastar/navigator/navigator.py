@@ -28,6 +28,8 @@ from dynastar.planning import Planner
 from dynastar.robot import Robot
 from dynastar.scan import LaserScan
 
+Movers = Sequence[MovingObstacle] | None
+
 
 class Navigator:
     """Takes a robot to its goals: give it every state and scan, and drive as it says.
@@ -55,8 +57,8 @@ class Navigator:
         self._last_turn, self._planner = LastTurn(config), planner
         self._commands = Commands(robot.limits, config.period, config.latency, config.drive_error)
         self.route = Route(self._planners_on(planning_map), config, robot.limits)
-        self._recovery = Recovery(self.mission, self.route, robot.limits, config)
-        self.progress = self._recovery.progress
+        self.recovery = Recovery(self.mission, self.route, robot.limits, config)
+        self.progress = self.recovery.progress
         self.retune(config.dwa)
 
     def __repr__(self) -> str:
@@ -135,7 +137,7 @@ class Navigator:
         if self.sensing is sensing:
             self.driving.carry_on(driving)
         else:  # places in the frame of the old map
-            self.progress.reset()
+            self.recovery.reset()
             self._last_turn.reset()
         self.route.set_map(self._planners_on(planning_map))
 
@@ -197,7 +199,7 @@ class Navigator:
     def _start_over(self, path: Path | None = None) -> None:
         """Forget path, manoeuvre and attempts of the last goal."""
         self.route.start_over(path)
-        self.progress.reset()
+        self.recovery.reset()
         self._last_turn.reset()
         self.driving.forget_manoeuvre()
 
@@ -207,7 +209,7 @@ class Navigator:
         self._commands.forget_times()
         self.retune(self.config.dwa)
         self.route.forget_times()
-        self.progress.reset()
+        self.recovery.reset()
         self._last_turn.reset()
 
     # -- the tick ---------------------------------------------------------------------------------
@@ -216,7 +218,7 @@ class Navigator:
         self,
         state: RobotState,
         scan: LaserScan | Sequence[LaserScan] | None,
-        movers: Sequence[MovingObstacle] | None = None,
+        movers: Movers = None,
     ) -> Twist:
         """The twist to drive from now on; ``movers`` replaces what the tracker finds in the scans."""
         self._choice = None
@@ -248,9 +250,7 @@ class Navigator:
         at_end, limits = self.route.is_at_end, self.robot.limits
         return at_end and has_arrived(self._goal, state.pose, acting, limits, self.config)
 
-    def _update_route(
-        self, state: RobotState, changed: bool, movers: Sequence[MovingObstacle] | None
-    ) -> None:
+    def _update_route(self, state: RobotState, changed: bool, movers: Movers) -> None:
         """Keep, replace or drop the path, and tell the mission what that means."""
         guide, is_taken = self.driving.guide, self.sensing.is_moving_at(self._goal, movers)
         reachable = guide is None or guide.reachable
@@ -261,15 +261,10 @@ class Navigator:
         if event.blocked:
             self.mission.block(event.blocked, event.error)
 
-    def _decide(
-        self,
-        state: RobotState,
-        acting: Acting,
-        movers: Sequence[MovingObstacle] | None,
-    ) -> Twist | None:
+    def _decide(self, state: RobotState, acting: Acting, movers: Movers) -> Twist | None:
         """The command, by the dynamic window or to turn to the goal's heading; None to stop."""
-        if self._recovery.is_stopping:
-            self._recovery.go_on(state, self._refine)
+        if self.recovery.is_stopping:
+            self.recovery.go_on(state, self._refine)
             return None
         pose, measured = acting
         twist = self._commands.carried_on(measured)
@@ -293,9 +288,12 @@ class Navigator:
                 return command if driving.window.admits(scene.around, stops, command) else None
             if not turn.finds_place(scene, rules, pose, goal, state.stamp):
                 return None
+        if self.recovery.drives_out(scene, driving.window, pose, state.stamp):
+            driving.forget_manoeuvre()
+            return self.recovery.way_out.command(scene, driving.window, pose, twist, stops)
         choice = self._choice = driving.choose(pose, twist, scene, stops)
         assert driving.guide is not None
         self.mission.say_driving(choice, len(view.moving.obstacles) > 0, self.route.waits_because)
-        self._recovery.judge(state, driving.guide.cost_at)
-        goes_on = self.mission.under_way and not self._recovery.is_stopping
+        self.recovery.judge(state, driving.guide.cost_at)
+        goes_on = self.mission.under_way and not self.recovery.is_stopping
         return choice.command if goes_on else None

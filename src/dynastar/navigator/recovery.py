@@ -1,12 +1,16 @@
-"""What a robot does that makes no progress: stop, plan anew, and give up after some attempts."""
+"""What a robot does that makes no progress: stop, plan anew, look for a way over poses, give up at last."""
 
 from collections.abc import Callable
 
+from dynastar.dwa.dwa import DynamicWindow
+from dynastar.dwa.scene import Scene
+from dynastar.geometry import Pose2D
 from dynastar.navigator.config import NavigatorConfig
 from dynastar.navigator.mission import Mission
 from dynastar.navigator.progress import CostToGoAt, Progress
 from dynastar.navigator.replanning import Route
 from dynastar.navigator.status import RobotState
+from dynastar.navigator.way_out import WayOut
 from dynastar.robot import Limits, stopping_time
 
 
@@ -18,6 +22,12 @@ class Recovery:
     ) -> None:
         self.mission, self.route, self.limits, self.config = mission, route, limits, config
         self.progress = Progress(config.stuck_time)
+        self.way_out = WayOut(limits, config.stuck_time)
+
+    def reset(self) -> None:
+        """Another goal or map: nothing has been reached or tried yet."""
+        self.progress.reset()
+        self.way_out.forget()
 
     def judge(self, state: RobotState, cost_to_go: CostToGoAt) -> None:
         """End the mission if all attempts were made; else begin to stop if the robot is stuck."""
@@ -61,4 +71,18 @@ class Recovery:
         if not has_path:
             refine()
         self.progress.restart(state.stamp)
+        self.way_out.is_wanted = route.given is None
         self.mission.recover(state.stamp, "no progress: plan anew")
+
+    def drives_out(self, scene: Scene, window: DynamicWindow, pose: Pose2D, now: float) -> bool:
+        """Whether the robot drives a way over poses; it looks for one when it has planned anew."""
+        way_out = self.way_out
+        if way_out.is_wanted:
+            way_out.forget()
+            if self.route.path is not None:
+                way_out.look(scene, window, pose, now)
+        if not way_out.goes_on(pose, now):
+            return False
+        self.progress.restart(now)
+        self.mission.say("recovering", "backs and turns to where the path leads on")
+        return True

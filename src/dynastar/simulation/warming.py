@@ -46,5 +46,7 @@ def warm_up() -> None:
                 navigator.follow([start[:2], goal[:2]])
             if tick == TURNS + TICKS:
                 navigator.set_goal(goal)
+            if tick == 2 * TICKS + TURNS - 1:
+                navigator.recovery.way_out.is_wanted = True
             state = RobotState(world.time, world.pose, world.twist)
             world.step(navigator.command(state, world.scan()), PERIOD)
