@@ -15,6 +15,8 @@ from numba.core import caching, event
 from dynastar.bench.missions import Options
 from dynastar.bench.selection import choose_missions
 from dynastar.bench.suites import load_suite
+from dynastar.dwa.nearest import nearest_admissible
+from dynastar.dwa.pose_search import search_poses
 from dynastar.simulation import warm_up
 from dynastar.simulation.run import drive
 
@@ -36,6 +38,7 @@ def load_overload(cache, *arguments):
 event.register("numba:compile", Compiled())
 caching.Cache.load_overload = load_overload
 warm_up()
+compiled += [k.__name__ for k in (search_poses, nearest_admissible) if not k.signatures]  # rare
 options = Options(data=Path(sys.argv[1]) if sys.argv[1] else None, missions=2)
 for name in sys.argv[2:]:
     suite = load_suite(name)

@@ -284,7 +284,7 @@ def slow_choice(rules, state, scene, choice):
     gap = least_clearance(scene.distance_to_obstacle, rules.body, state.pose) - scene.margin
     rows = np.zeros(len(schedule.step), ROW)
     rows[0] = (*state.pose, state.v, gap, True)
-    here = state_value(scene.cost_to_go, limits, rows.view(np.recarray)[0])
+    here = state_value(scene.cost_to_go, limits, rows.view(np.recarray)[0], rows[0]["v"])
     start, moving = start_of(rules, state, gap, here), scene.around.moving
     roll_out(scene, rules, start, Manoeuvre(0.0, 0.0, 0.0, STOP), rows)
     in_the_way = not passes_clear(moving, rules, rows, 99.0)

@@ -72,7 +72,7 @@ def slow_value(row):
 @settings(deadline=None)
 def test_the_cost_to_go_of_a_state_counts_its_curve_and_its_overshooting(seed):
     for row in random_rows(np.random.default_rng(seed)).view(np.recarray)[:5]:
-        found = t.state_value(SCENE.cost_to_go, LIMITS, row)
+        found = t.state_value(SCENE.cost_to_go, LIMITS, row, row.v)
         assert found == pytest.approx(slow_value(row), abs=1e-9)
         assert found >= value_at(SCENE.cost_to_go, row.x, row.y)
 

@@ -8,7 +8,7 @@ import pytest
 from driving import room
 from dynastar.footprint import Footprint
 from dynastar.geometry import Goal, Pose2D
-from dynastar.navigator.way_out import LOST, NEAR, TURNED, WayOut, _joined
+from dynastar.navigator.way_out import LOST, NEAR, TURNED, WayOut, joined
 from dynastar.robot import Lidar, Limits, Robot
 from dynastar.simulation import Noise, Scenario, run
 
@@ -35,6 +35,21 @@ def junction(width):
 def test_a_long_robot_turns_into_a_corridor_as_wide_as_itself_is_long(robot, x):
     scenario = Scenario(
         "junction", junction(1.0), robot, (x, 4.5, math.pi), (Goal(4.5, 1.6),),
+        noise=Noise(0.01, 0.01), latency=0.1, time_limit=90.0,
+    )  # fmt: skip
+    episode = run(scenario)
+    assert episode.outcome == "arrived", episode.reason
+
+
+@pytest.mark.parametrize(("apart", "second"), [(1.4, 0.8), (1.5, 3.2)])
+def test_a_long_robot_gets_through_two_doors_that_are_not_opposite(apart, second):
+    wall = 3.2 + apart
+    doors = room(
+        9.0, 6.0, (3.0, 0.0, 3.2, 2.0), (3.0, 2.8, 3.2, 6.0),
+        (wall, 0.0, wall + 0.2, second), (wall, second + 0.8, wall + 0.2, 6.0),
+    )  # fmt: skip
+    scenario = Scenario(
+        "doors", doors, cart(), (1.2, 2.4, 0.0), (Goal(7.0, second + 0.4),),
         noise=Noise(0.01, 0.01), latency=0.1, time_limit=90.0,
     )  # fmt: skip
     episode = run(scenario)
@@ -75,11 +90,11 @@ def test_turns_are_joined_but_still_lead_the_same_way_round(count, side):
         *((0.1, 0.0, step * (k + 1), 0) for k in range(count)),
         (0.2, 0.0, 0.0, -1),
     ]
-    joined = _joined(np.array(rows, float))
-    headings = np.array([row[2] for row in joined if row[3] == 0.0])
+    found = joined(np.array(rows, float))
+    headings = np.array([row[2] for row in found if row[3] == 0.0])
     assert len(headings) == -(-count // 15)
     turned = np.diff(headings, prepend=0.0)
     assert np.all(side * turned > 0.0)
     assert np.all(np.abs(turned) < math.pi)
     assert headings[-1] == step * count
-    assert list(joined[[0, -1], 3]) == [1, -1]
+    assert list(found[[0, -1], 3]) == [1, -1]

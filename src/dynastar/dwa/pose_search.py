@@ -7,7 +7,6 @@ of one length, ahead and back, and turns on the spot.
 
 import heapq
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -21,7 +20,7 @@ HEADINGS = 32
 ACROSS = 64  # bins from one side of the searched square to the other
 STEP, BIN = 2.0, 1.6  # cells, the length of a move and the side of a bin
 BACKING = 3.0  # m ahead that a metre back is as dear as: lidars look ahead
-MOST = 1500  # moves that are checked
+MOST = 3000  # moves that are checked at most
 TURN = math.tau / HEADINGS
 MOVES = (1, 0), (1, 1), (1, -1), (-1, 0), (-1, 1), (-1, -1), (0, 1), (0, -1)  # steps, turns
 NODE = np.dtype(
@@ -29,16 +28,6 @@ NODE = np.dtype(
     + [(name, np.int64) for name in ("before", "move", "is_settled")]
 )
 FIRST = -1  # in place of a move
-
-
-class AtRest(NamedTuple):
-    """A pose at which the robot rests."""
-
-    x: float
-    y: float
-    cos: float
-    sin: float
-    v: float
 
 
 @inner
@@ -55,8 +44,7 @@ def bin_of(pose, middle, side):
 @inner
 def left_from(scene, rules, pose):
     """The cost-to-go (m) of a robot that rests at a pose."""
-    at = AtRest(pose.x, pose.y, pose.cos, pose.sin, 0.0)
-    return state_value(scene.cost_to_go, rules.limits, at)
+    return state_value(scene.cost_to_go, rules.limits, pose, 0.0)
 
 
 @inner

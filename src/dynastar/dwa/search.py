@@ -48,7 +48,7 @@ def search(scene, rules, state, stops_from, candidates, rows):
     """
     gap = least_clearance(scene.distance_to_obstacle, rules.body, state.pose) - scene.margin
     write(rows[0], state, gap, True)
-    here = state_value(scene.cost_to_go, rules.limits, rows[0])
+    here = state_value(scene.cost_to_go, rules.limits, rows[0], state.v)
     start = Start(state, gap, here, most_progress(rules, state.v, here))
     n = fill_candidates(scene, rules, start, candidates)
     in_the_way = stops_in_the_way(scene, rules, start, rows)

@@ -76,7 +76,7 @@ def progress(cost_to_go, rules, start, rows):
     for i in rules.schedule.lookups:
         row = rows[i]
         if row.on_map:
-            before, here = here, state_value(cost_to_go, rules.limits, row)
+            before, here = here, state_value(cost_to_go, rules.limits, row, row.v)
             fell = before - here
         else:
             here -= fell
@@ -172,19 +172,19 @@ def passes_clear(moving, rules, rows, duration):
 
 
 @inner
-def state_value(cost_to_go, limits, at):
+def state_value(cost_to_go, limits, at, v):
     """The cost-to-go (m) of a pose and speed: its place's, the curve to the descent, overshooting.
 
     A curve of radius r that turns by an angle a gets r sin a ahead on a way of r a. Near its goal, where
     the curve is longer than what is left, the robot backs or turns on the spot: the curve counts for at
-    most twice what is left, and for more the longer it is. ``at`` has x, y, cos, sin, v.
+    most twice what is left, and for more the longer it is. ``at`` has x, y, cos, sin.
     """
     value = value_at(cost_to_go, at.x, at.y)
     left = max(value, 0.0)
     off = abs(turn_to_descent(cost_to_go, at, 0.0))
     curve = (off - math.sin(off)) * limits.v_max / limits.omega_max
     turn = curve if curve <= left else left * (2.0 - left / curve)
-    too_far = max(0.0, 0.5 * at.v * at.v / limits.v_brake - left - OVERSHOOT)
+    too_far = max(0.0, 0.5 * v * v / limits.v_brake - left - OVERSHOOT)
     return value + turn + too_far
 
 

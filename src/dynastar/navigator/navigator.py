@@ -274,7 +274,7 @@ class Navigator:
         target = self._last_turn.target(pose) or self.route.target(driving.lookahead)
         closed = self.planners.closed_under(self.sensing.local_map)
         scene = driving.scene(pose, state.twist.v, view, target, closed, self.planning_map)
-        goal, limits = self._goal, self.robot.limits
+        goal, limits, in_vain = self._goal, self.robot.limits, self._commands.check.turned_in_vain
         is_there = self.route.is_at_end and stays_near(goal, pose, acting, limits, self.config)
         if goal.heading is not None and is_there and self.route.path is not None:
             rules, turn = driving.window.rules, self._last_turn
@@ -283,14 +283,14 @@ class Navigator:
             if angle is not None:
                 driving.forget_manoeuvre()
                 period = self.sensing.poses.period
-                in_vain = self._commands.check.turned_in_vain
                 command = turn_by(angle, turn.short_by, twist, limits, period, in_vain)
                 return command if driving.window.admits(scene.around, stops, command) else None
             if not turn.finds_place(scene, rules, pose, goal, state.stamp):
                 return None
         if self.recovery.drives_out(scene, driving.window, pose, state.stamp):
             driving.forget_manoeuvre()
-            return self.recovery.way_out.command(scene, driving.window, pose, twist, stops)
+            way_out = self.recovery.way_out
+            return way_out.command(scene, driving.window, pose, twist, stops, in_vain)
         choice = self._choice = driving.choose(pose, twist, scene, stops)
         assert driving.guide is not None
         self.mission.say_driving(choice, len(view.moving.obstacles) > 0, self.route.waits_because)

@@ -9,18 +9,16 @@ from dynastar.dwa.dwa import DynamicWindow, Stops
 from dynastar.dwa.motion import state_at
 from dynastar.dwa.pose_search import HEADINGS, search_poses
 from dynastar.dwa.scene import Scene
-from dynastar.geometry import Pose2D, Twist, wrap_angle
+from dynastar.geometry import Pose2D, Twist, compose, inverse, wrap_angle
 from dynastar.navigator.arrival import GENTLE_BRAKING
 from dynastar.navigator.last_turn import turn_by
-from dynastar.robot import Limits, slew
+from dynastar.robot import Limits
 
 GAIN = 1.0  # m of progress to look for: with it the rounds of recovery start over
 SPARES = 0.04, 0.0  # m beyond the margin, looked for in turn: the robot does not drive exactly
 AIM = 2  # moves ahead of the next one that the robot steers for
 SPEED = 0.5  # of the highest
-PARTS = 1.0, 0.5, 0.2  # of the speeds that are asked for, which are tried in turn
 NEAR, LOST = 0.03, 0.5  # m from the end of a move: it has ended, the robot is elsewhere
-SAME = 1e-3  # m
 TURNED = 0.05  # rad by which a turn may fall short
 
 
@@ -42,13 +40,12 @@ class WayOut:
         self._since = -math.inf
 
     def look(self, scene: Scene, window: DynamicWindow, pose: Pose2D, now: float) -> None:
-        """Look for a way from where the robot rests; there is no use in turning a disc round its axle."""
-        body = window.rules.body
-        if body.circumscribed - body.inscribed < SAME:
+        """Look for a way from where the robot rests; a disc round its axle gains nothing by turning."""
+        if len(window.rules.body.vertices) == 0:
             return
         at, self._since = state_at(*pose, 0.0, 0.0), now
         for spare in SPARES:
-            self.way = _joined(search_poses(scene, window.rules, at, GAIN, spare))
+            self.way = joined(search_poses(scene, window.rules, at, GAIN, spare))
             if len(self.way) > 0:
                 return
 
@@ -63,30 +60,25 @@ class WayOut:
         return len(self.way) > 0
 
     def command(
-        self, scene: Scene, window: DynamicWindow, pose: Pose2D, twist: Twist, stops: Stops
+        self,
+        scene: Scene,
+        window: DynamicWindow,
+        pose: Pose2D,
+        twist: Twist,
+        stops: Stops,
+        in_vain: float,
     ) -> Twist | None:
-        """The fastest admissible command of some along the way; None if only a stop is left."""
+        """The admissible command nearest to one along the way; None if only a stop is left.
+
+        ``in_vain`` as in ``turn_by``.
+        """
         *_, theta, kind = self.way[0]
         if kind == 0.0:
             angle = wrap_angle(theta - pose.theta)
-            v, omega = turn_by(angle, TURNED, twist, self.limits, window.rules.period)
+            asked = turn_by(angle, TURNED, twist, self.limits, window.rules.period, in_vain)
         else:
-            v, omega = self._arc(pose, kind, scene.v_cap)
-        for part in PARTS:
-            command = self._towards(twist, Twist(part * v, part * omega), window.rules.period)
-            if window.admits(scene.around, stops, command):
-                return command
-        return None
-
-    def _towards(self, twist: Twist, wanted: Twist, period: float) -> Twist:
-        """The command of one period on the way to the wanted speeds; none that the drive cannot follow."""
-        limits = self.limits
-        v = slew(twist.v, wanted.v, limits.v_accel, limits.v_brake, period)
-        omega = slew(twist.omega, wanted.omega, limits.omega_accel, limits.omega_brake, period)
-        return Twist(
-            _driveable(v, wanted.v, limits.v_least),
-            _driveable(omega, wanted.omega, limits.omega_least),
-        )
+            asked = self._arc(pose, kind, scene.v_cap)
+        return window.nearest(scene.around, stops, twist, asked)[0]
 
     def _has_ended(self, pose: Pose2D) -> bool:
         x, y, theta, kind = self.way[0]
@@ -108,7 +100,7 @@ class WayOut:
         return Twist(v, v * curvature)
 
 
-def _joined(way: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def joined(way: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """A way with one turn in place of several, each by less than half a turn: the same way round."""
     keep, turns = np.ones(len(way), bool), 0
     for k, kind in enumerate(way[:-1, 3]):
@@ -119,13 +111,4 @@ def _joined(way: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 
 def _seen_from(pose: Pose2D, x: float, y: float) -> tuple[float, float]:
     """A place as the robot sees it: metres ahead and to the left."""
-    dx, dy = x - pose.x, y - pose.y
-    cos, sin = math.cos(pose.theta), math.sin(pose.theta)
-    return cos * dx + sin * dy, cos * dy - sin * dx
-
-
-def _driveable(speed: float, wanted: float, least: float) -> float:
-    """A speed that a drive follows on the way to a wanted one: 0, or of ``least`` magnitude."""
-    if abs(speed) >= least:
-        return speed
-    return math.copysign(least, wanted) if abs(wanted) >= least else 0.0
+    return compose(inverse(pose), Pose2D(x, y, 0.0))[:2]

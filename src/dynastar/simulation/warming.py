@@ -6,7 +6,7 @@ import numpy as np
 
 from dynastar.geometry import Goal, Pose2D
 from dynastar.grid import OccupancyGrid
-from dynastar.navigator import Navigator, NavigatorConfig, RobotState
+from dynastar.navigator import Guard, Navigator, NavigatorConfig, RobotState
 from dynastar.planning.search import SearchGrid
 from dynastar.robot import ROBOTS
 from dynastar.simulation.scenario import Mover, Scenario
@@ -49,4 +49,7 @@ def warm_up() -> None:
             if tick == 2 * TICKS + TURNS - 1:
                 navigator.recovery.way_out.is_wanted = True
             state = RobotState(world.time, world.pose, world.twist)
-            world.step(navigator.command(state, world.scan()), PERIOD)
+            scan = world.scan()
+            command = navigator.command(state, scan)
+            world.step(command, PERIOD)
+        Guard(robot).filter(state, scan, command)
