@@ -105,10 +105,10 @@ def test_pages_and_messages_install_extras_by_the_command_that_works_today():
         "optional-dependencies"
     ]
     pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
-    folders = [ROOT / name for name in ("src", "ros", "examples")]
-    texts = [f for of in folders for f in of.rglob("*") if f.suffix in (".py", ".xml", ".md")]
+    files = [file for name in ("src", "ros", "examples") for file in (ROOT / name).rglob("*")]
+    texts = [file for file in files if file.suffix in (".py", ".xml", ".md")]
     found = 0
-    for file in [*pages, *(of for of in texts if of.name != "extras.py")]:
+    for file in [*pages, *(text for text in texts if text.name != "extras.py")]:
         for command, named in re.findall(
             r"(pip install (?:-e )?'[\w.]*\[([\w,]+)\]')", file.read_text("utf-8")
         ):
