@@ -6,7 +6,7 @@ its start a disc of the footprint's inscribed radius, less a cell, could get thr
 had seen free (and never seen hit since) when the mission ended; and how far, if unseen cells were free.
 No motion leads a robot farther through what it has seen than such a disc.
 
-    dynastar bench random --missions 1000 --seed 10003 --json-out random.json
+    dynastar bench random --missions 1000 --seed 10008 --json-out random.json
     python benchmarks/dead_ends.py random.json --picture dead_ends.png
 """
 

@@ -93,9 +93,10 @@ def draw_scene(axes: Axes, scene: Any, pose: Any, line: Any, path: Any) -> None:
         axes.plot(*path.T, "m--", lw=1.2, label="global path")
     axes.plot(*line.T, "c-", lw=2.0, label="descent of the cost-to-go")
     draw_obstacles(axes, scene)
-    for x, y, vx, vy, radius in scene.around.moving.obstacles.tolist():
-        for travel, colour in zip(scene.around.moving.travel[:, 9::10], COLOURS, strict=True):
-            for t, deviation in zip(travel, scene.around.moving.deviation[9::10], strict=True):
+    moving = scene.around.moving
+    for m, (x, y, vx, vy, radius) in enumerate(moving.obstacles.tolist()):
+        for travel, colour in zip(moving.travel[:, 9::10], COLOURS, strict=True):
+            for t, deviation in zip(travel, moving.deviation[m, 9::10], strict=True):
                 size, place = radius + deviation, (x + t * vx, y + t * vy)
                 axes.add_patch(Circle(place, size, fill=False, color=colour, lw=0.8))
     for h, name in enumerate(NAMES):
