@@ -24,7 +24,7 @@ help:
 	@echo "make docs    the documentation as a site of HTML, in out/docs"
 	@echo "make pictures  the pictures of README and playground anew (needs chromium)"
 	@echo "make dist    wheel and source distribution in dist"
-	@echo "make results  all tables and pictures of the pages anew (needs DYNASTAR_DATA); about six hours; resumes"
+	@echo "make results  all tables and pictures of the pages anew (needs DYNASTAR_DATA); about five hours; resumes"
 	@echo "make bench   how fast it is, beside others, in an environment of its own"
 	@echo "make clean   remove .venv, out and caches"
 
