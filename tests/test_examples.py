@@ -158,7 +158,7 @@ def test_the_playgrounds_scenes_can_be_driven(file: Path) -> None:
         arrives(scenario, replans=0)
         return
     x, y, heading = scenario.start
-    starts = [(x + right, y, heading) for right in (-0.1, -0.05, 0.0, 0.05, 0.1)]
+    starts = [(x + right, y, heading) for right in (-0.1, 0.0, 0.1)]
     results = [measure(run(replace(scenario, start=start))) for start in starts]
     assert sum(result.contacts_moving for result in results) == 0
-    assert sum(result.outcome == "arrived" for result in results) >= 3  # walkers react to nobody
+    assert sum(result.outcome == "arrived" for result in results) >= 2  # walkers react to nobody

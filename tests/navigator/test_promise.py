@@ -20,7 +20,7 @@ from dynastar.robot import ROBOTS, Lidar, Limits, Robot, slew
 from dynastar.simulation import Noise, Scenario, run
 from dynastar.simulation.contact import Solids
 
-WORLDS = int(os.environ.get("DYNASTAR_WORLDS", 42))
+WORLDS = int(os.environ.get("DYNASTAR_WORLDS", 30))
 EMPTY = OccupancyGrid(np.zeros((1, 1), np.int8), GridFrame(40.0, -20.0, -20.0))
 OUTCOMES = {"arrived", "blocked", "timeout", "sensor_lost", "contact"}
 
