@@ -198,6 +198,7 @@ def test_refining_keeps_what_is_where(size, factor, frame, data):
         (lambda: OccupancyGrid([[0, 0]], GridFrame("0.05")), "a grid's frame is GridFrame"),
         (lambda: OccupancyGrid.from_occupied([[0, 0]], "0.05"), "a grid's frame is GridFrame"),
         (lambda: OccupancyGrid([[0, 0]], keepout=[[0], [0, 1]]), "keepout is"),
+        (lambda: OccupancyGrid.from_text(3), "a drawn map is 3: expected a string"),
         (lambda: OccupancyGrid.from_text([1, 2]), "line 1 of a drawn map is 1: expected a string"),
         (lambda: empty(2, 2).refined(1.5), "refined by 1.5: expected a whole number"),
         (lambda: empty(2, 2).numbered(1.5), "a cell's number is 1.5: expected a whole number"),

@@ -153,6 +153,8 @@ class OccupancyGrid:
         Short lines are free at their ends. Raises MapError for other marks, and for more than
         ``MOST_DRAWN`` cells.
         """
+        if not isinstance(text, str | Sequence):
+            raise MapError(f"a drawn map is {shown(text)}: expected a string, or one for each line")
         lines = text.strip("\n").split("\n") if isinstance(text, str) else list(text)
         legal = set("#. ?")
         for number, line in enumerate(lines, 1):
