@@ -4,8 +4,7 @@
 ``distance_transform_edt`` and the package edt (one thread; left out if it is not installed) on maps of
 1000 x 1000 cells, in turns, warm, the best of some times; the fields are asserted to be the same to 0.001
 cells. Below, what a robot has to keep up to date: a local
-map of 200 x 200 cells (10 m at 5 cm) that a scan changed or that moved on by a metre, and the same
-window of the large map where only distances up to 2 m matter (``update_window``).
+map of 200 x 200 cells (10 m at 5 cm) that a scan changed or that moved on by a metre.
 """
 
 import math
@@ -23,12 +22,12 @@ except ImportError:
     edt = None
 
 from dynastar import Lidar, OccupancyGrid, Pose2D
-from dynastar.clearance import distance_field, update_window
+from dynastar.clearance import distance_field
 from dynastar.perception import LocalMap, LocalMapConfig
 from dynastar.perception.placed_scan import placed
 from dynastar.simulation.lidar import LidarSimulator
 
-N, SIDE, CELL, CAP, REPEATS = 1000, 200, 0.05, 2.0, 10
+N, SIDE, CELL, REPEATS = 1000, 200, 0.05, 10
 
 
 def least(*runs: Callable[[], object]) -> list[float]:
@@ -91,18 +90,10 @@ def main() -> None:
             runs.append(lambda f=free: edt.edt(f, parallel=1))
         own, *theirs = least(*runs)
         print(f"{name:16}{own:10.2f}" + "".join(f"{ms:10.2f}{own / ms:8.2f}" for ms in theirs))
-    print(
-        f"\n{'ms, 200 x 200':16}{'local map':>10}{'moved on':>10}{'window of the map, capped':>28}"
-    )
+    print(f"\n{'ms, 200 x 200':16}{'local map':>10}{'moved on':>10}")
     for name, occupied in maps.items():
-        field = np.minimum(distance_field(occupied, CELL), np.float32(CAP))
-        before = field.copy()
-        corner = (N - SIDE) // 2
-        window = (corner, corner, SIDE, SIDE, CAP)
-        (capped,) = least(lambda f=field, o=occupied, w=window: update_window(f, o, CELL, *w))
-        assert np.abs(field - before).max() < 1e-3 * CELL
         still, moved = local_map_times(occupied)
-        print(f"{name:16}{still:10.2f}{moved:10.2f}{capped:28.2f}")
+        print(f"{name:16}{still:10.2f}{moved:10.2f}")
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dynastar.clearance import FAR, WIDE, distance_field, inflate, update_window
+from dynastar.clearance import FAR, WIDE, distance_field, inflate
 from naive import clearance, distances
 
 
@@ -26,21 +26,6 @@ def test_distance_field_is_exact_far_away():
     blocked[3, 5] = True
     field = distance_field(blocked, 1.0)
     assert field[699, 899] == pytest.approx(math.hypot(696, 894), rel=1e-6)
-
-
-@given(st.integers(0, 10**6))
-def test_an_updated_window_is_as_if_made_anew(seed):
-    rng = np.random.default_rng(seed)
-    rows, columns = rng.integers(5, 40, 2)
-    blocked = rng.random((rows, columns)) < 0.1
-    cap = rng.uniform(0.1, 1.0)
-    field = np.minimum(distance_field(blocked, 0.1), np.float32(cap))
-    row, column = rng.integers(0, rows), rng.integers(0, columns)
-    height, width = rng.integers(1, rows - row + 1), rng.integers(1, columns - column + 1)
-    blocked[row : row + height, column : column + width] = rng.random((height, width)) < 0.1
-    update_window(field, blocked, 0.1, row, column, height, width, cap)
-    anew = np.minimum(distance_field(blocked, 0.1), np.float32(cap))
-    np.testing.assert_allclose(field, anew, rtol=1e-6)
 
 
 @pytest.mark.parametrize("radius", [0.0, 0.3, 0.5, 0.51, 0.8, 1.5, 2.0, 3.7])

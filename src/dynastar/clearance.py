@@ -40,31 +40,6 @@ def lower_bounds(free: npt.NDArray[np.uint8], resolution: float) -> Field:
     return np.multiply(field, np.float32(resolution * CHAMFER), out=field)
 
 
-def update_window(
-    field: Field,
-    blocked: Mask,
-    resolution: float,
-    row0: int,
-    col0: int,
-    rows: int,
-    cols: int,
-    cap: float,
-) -> None:
-    """Brings ``field`` up to date after ``blocked`` changed in a window, in place.
-
-    ``field`` and ``blocked`` are [rows, columns] of the whole map; the window starts at
-    (row0, col0). Recomputed is what lies within ``cap`` metres of the window, capped at ``cap``: a
-    field that was ``min(distance_field, cap)`` before is so again.
-    """
-    reach = math.ceil(cap / resolution)
-    top, left = max(row0 - reach, 0), max(col0 - reach, 0)
-    bottom, right = row0 + rows + reach, col0 + cols + reach
-    seen_top, seen_left = max(top - reach, 0), max(left - reach, 0)
-    near = distance_field(blocked[seen_top : bottom + reach, seen_left : right + reach], resolution)
-    inner = near[top - seen_top : bottom - seen_top, left - seen_left : right - seen_left]
-    np.minimum(inner, np.float32(cap), out=field[top:bottom, left:right])
-
-
 def inflate(blocked: npt.ArrayLike, radius_cells: float, outside_blocked: bool = True) -> Mask:
     """Where the centre of a disc of ``radius_cells`` cells may not be, exactly.
 
