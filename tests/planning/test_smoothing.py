@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from dynastar.clearance import inflate
 from dynastar.errors import NoPath
 from dynastar.planning import SearchGrid, segment_clear, smooth
+from dynastar.planning.segments import CellPoint
 from dynastar.planning.taut_kernel import edge
 from naive import clearance, slips_through
 
@@ -201,13 +202,13 @@ def test_no_corner_near_a_triangle_is_overlooked(seed, radius):
     ring = rng.choice([0.0, radius], (200, 1)) * np.column_stack([np.sin(turn), np.cos(turn)])
     y, x = (shares @ corners + ring).T
     for (ey, ex), (oy, ox) in ((a, b), (b, c), (c, a)):
-        slope, lowest, highest = edge(ey, ex, oy, ox, side, radius + 1e-6)
+        slope, lowest, highest = edge(CellPoint(ey, ex), CellPoint(oy, ox), side, radius + 1e-6)
         on = ex + slope * (y - ey)
         assert ((x >= on + lowest) & (x <= on + highest)).all()
     further = 2.0 * radius + 1.0
     across = (b - a)[::-1] * [1.0, -1.0] / np.hypot(*(b - a))  # at right angles to a - b, and out
     away = 0.5 * (a + b) + further * across * (1.0 if across @ (c - a) < 0.0 else -1.0)
-    slope, lowest, highest = edge(*a, *b, side, radius)
+    slope, lowest, highest = edge(CellPoint(*a), CellPoint(*b), side, radius)
     on = a[1] + slope * (away[0] - a[0])
     assert a[0] == b[0] or not on + lowest <= away[1] <= on + highest
 

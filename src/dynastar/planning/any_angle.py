@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.compiled import allocating, njit
-from dynastar.planning.segments import Bytes, is_clear, mask_bytes
+from dynastar.planning.segments import Bytes, CellPoint, distance, is_clear, mask_bytes
 from dynastar.planning.smoothing import Points, polyline_length
 
 CORRIDOR = 3  # cells to either side of a way
@@ -37,9 +37,9 @@ def fitting_centres(
             for c in range(max(column - reach, 0), min(column + reach + 1, columns)):
                 if not taken[r, c]:
                     taken[r, c] = True
-                    y, x = r + 0.5, c + 0.5
-                    if not blocked[r, c] and is_clear(blocked, y, x, y, x, radius):
-                        found[count] = y, x
+                    centre = CellPoint(r + 0.5, c + 0.5)
+                    if not blocked[r, c] and is_clear(blocked, centre, centre, radius):
+                        found[count] = centre
                         count += 1
     return found[:count]
 
@@ -71,18 +71,18 @@ def shortest_lines(blocked: Bytes, centres: Points, radius: float, bound: float)
         if here == 1:
             break
         kept = 0
-        y, x = centres[here, 0], centres[here, 1]
+        at_here = CellPoint(centres[here, 0], centres[here, 1])
         for k in range(left):
             there = unseen[k]
             if there == here:
                 continue
             unseen[kept] = there
             kept += 1
-            dy, dx = centres[there, 0] - y, centres[there, 1] - x
-            length = g[here] + math.sqrt(dy * dy + dx * dx)
+            at_there = CellPoint(centres[there, 0], centres[there, 1])
+            length = g[here] + distance(at_here, at_there)
             if length >= g[there] or length + ahead[there] > bound:
                 continue
-            if is_clear(blocked, y, x, centres[there, 0], centres[there, 1], radius):
+            if is_clear(blocked, at_here, at_there, radius):
                 if g[there] == np.inf:
                     waiting[open_count] = there
                     open_count += 1

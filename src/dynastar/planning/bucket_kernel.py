@@ -20,10 +20,11 @@ from dynastar.planning.labels import (
     STAMP_SHIFT,
     STRAIGHT,
     Ints,
+    Labels,
     octile,
     with_room,
 )  # fmt: skip
-from dynastar.planning.neighbours import CANONICAL, COLUMN_STEP, NO_DIRECTION, ROW_STEP, Bytes
+from dynastar.planning.neighbours import CANONICAL, COLUMN_STEP, NO_DIRECTION, ROW_STEP, Padded
 
 Heads = npt.NDArray[np.int32]
 Words = npt.NDArray[np.uint64]
@@ -81,19 +82,18 @@ def next_word(filled: Word, i: int) -> int:
 
 @njit(cache=True)
 def shortest(
-    near: Bytes, width: int, labels: Ints, stamp: int, start: int, goal: int,
-    informed: bool, heads: Heads, pool: Ints,
-) -> tuple[bool, int, Ints]:  # fmt: skip
-    """Expand from ``start`` until ``goal`` (-1: all nodes) is closed. Writes ``labels``.
+    grid: Padded, written: Labels, start: int, goal: int, informed: bool, pool: Ints
+) -> tuple[bool, int, Ints]:
+    """Expand from ``start`` until ``goal`` (-1: all nodes) is closed. Writes ``written``.
 
-    If not ``informed`` it searches all round (Dijkstra). ``heads`` and ``pool`` are work arrays.
-    Returns whether the goal was found, how many nodes were expanded, and ``pool``, which may have
-    grown.
+    If not ``informed`` it searches all round (Dijkstra). Returns whether the goal was found, how many
+    nodes were expanded, and ``pool``, a work array, which may have grown.
     """
+    (near, width), (labels, stamp) = grid, written
     steps = ROW_STEP * width + COLUMN_STEP
     tag = stamp << STAMP_SHIFT
     goal_y, goal_x = goal // width, goal % width
-    heads[:] = -1
+    heads = np.full(BUCKETS, -1, np.int32)
     words = np.zeros(64, np.uint64)
     labels[start] = tag | NO_DIRECTION << DIRECTION_SHIFT
     f = octile(start // width - goal_y, start % width - goal_x) if informed else 0

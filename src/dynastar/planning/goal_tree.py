@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.planning import bucket_kernel, labels, tree_kernel
-from dynastar.planning.neighbours import Bytes
+from dynastar.planning.neighbours import Bytes, Padded
 
 Cells = npt.NDArray[np.int32]
 
@@ -42,7 +42,6 @@ class GoalTree:
         self.stamp = 0
         self._tree: _Tree | None = None
         self._way = _Way(-1, 0, 0)
-        self._heads = np.empty(bucket_kernel.BUCKETS, np.int32)
         self._keys = np.empty(1024, np.int64)
         self._nodes = np.empty(1024, np.int32)
 
@@ -50,15 +49,13 @@ class GoalTree:
         """Make the next search start from nothing."""
         self._tree = None
 
-    def changed(self, top: int, left: int, bottom: int, right: int, opened: bool) -> None:
+    def changed(self, window: tree_kernel.Window, opened: bool) -> None:
         """Update the tree after ``near`` changed in a window; ``opened``: cells became free there."""
         if opened:
             self._tree = None  # there may be shorter ways
         if self._tree is not None:
-            self._nodes = tree_kernel.prune(
-                self.near.reshape(-1), self.near.shape[1], self.labels, self._tree.stamp,
-                top, left, bottom, right, self._nodes,
-            )  # fmt: skip
+            known = self.labels, self._tree.stamp
+            self._nodes = tree_kernel.prune(self._grid, known, window, self._nodes)
 
     def search(self, start: int, goal: int) -> tuple[bool, int]:
         """Whether there is a way between two nodes, and how many nodes were expanded."""
@@ -66,10 +63,11 @@ class GoalTree:
             self.labels[:] = self.again[:] = self.stamp = 0
             self._tree = None
         self.stamp += 1
-        near, width, tree = self.near.reshape(-1), self.near.shape[1], self._tree
+        tree = self._tree
         if tree is None or tree.goal != goal:
+            written = self.labels, self.stamp
             found, expanded, self._keys = bucket_kernel.shortest(
-                near, width, self.labels, self.stamp, goal, start, True, self._heads, self._keys
+                self._grid, written, goal, start, True, self._keys
             )
             self._tree = _Tree(self.stamp, goal, start, expanded) if found else None
             self._way = _Way(-1, start, self.stamp)
@@ -79,10 +77,10 @@ class GoalTree:
             return True, 0
         if not self.again.size:
             self.again = np.zeros(self.near.size, np.int64)
-        last, meeting, expanded, self._keys, self._nodes = tree_kernel.search_again(
-            near, width, self.labels, tree.stamp, tree.start, goal,
-            self.again, self.stamp, start, self._keys, self._nodes,
-        )  # fmt: skip
+        known, written = (self.labels, tree.stamp), (self.again, self.stamp)
+        last, meeting, expanded, (self._keys, self._nodes) = tree_kernel.search_again(
+            self._grid, known, tree.start, goal, written, start, (self._keys, self._nodes)
+        )
         self._way = _Way(last, meeting, tree.stamp)
         if last < 0 or 2 * expanded > tree.expanded:  # too little of it is left
             self._tree = None
@@ -92,14 +90,18 @@ class GoalTree:
         """The way (n, 2) that the last search found, in unpadded (row, column), and its length."""
         last, meeting, stamp = self._way
         width = self.near.shape[1]
-        back, cost = labels.trace(self.labels, stamp, width, meeting)
+        back, cost = labels.trace((self.labels, stamp), width, meeting)
         if last < 0:
             return back[::-1], cost
-        cells, first_cost = labels.trace(self.again, self.stamp, width, last)
+        cells, first_cost = labels.trace((self.again, self.stamp), width, last)
         step = math.dist(cells[-1], back[-1])
         return np.vstack([cells, back[::-1]]), first_cost + step + cost
 
     @property
-    def searched(self) -> npt.NDArray[np.int64]:
-        """The labels that the last search wrote under ``stamp``."""
-        return self.labels if self._way.stamp == self.stamp else self.again
+    def searched(self) -> labels.Labels:
+        """What the last search wrote."""
+        return self.labels if self._way.stamp == self.stamp else self.again, self.stamp
+
+    @property
+    def _grid(self) -> Padded:
+        return self.near.reshape(-1), self.near.shape[1]

@@ -8,7 +8,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from dynastar.compiled import njit, trailing_zeros
 from dynastar.planning.labels import (
@@ -18,11 +17,13 @@ from dynastar.planning.labels import (
     STAMP_BITS,
     STAMP_SHIFT,
     STRAIGHT,
+    Heap,
     Ints,
+    Labels,
     octile,
     with_room,
 )  # fmt: skip
-from dynastar.planning.neighbours import COLUMN_STEP, LEGAL, NO_DIRECTION, ROW_STEP, Bytes
+from dynastar.planning.neighbours import COLUMN_STEP, LEGAL, NO_DIRECTION, ROW_STEP, Padded
 
 F_SHIFT = 29
 SERIAL_BITS = (1 << F_SHIFT) - 1
@@ -133,14 +134,14 @@ def pop(heap: Ints, size: int) -> int:
 
 @njit(cache=True)
 def search(
-    near: Bytes, sums: Ints, width: int, labels: Ints, stamp: int,
-    start: int, goal: int, terms: Terms, heap: Ints, nodes: npt.NDArray[np.int32],
-) -> tuple[bool, int, Ints, npt.NDArray[np.int32]]:  # fmt: skip
-    """Expand from ``start`` until ``goal`` (-1: all nodes) is closed. Writes ``labels``.
+    grid: Padded, sums: Ints, written: Labels, start: int, goal: int, terms: Terms, work: Heap
+) -> tuple[bool, int, Heap]:
+    """Expand from ``start`` until ``goal`` (-1: all nodes) is closed. Writes ``written``.
 
-    Returns whether the goal was found, how many nodes were expanded, and the two work arrays
-    ``heap`` and ``nodes`` (nodes[serial number] is the node of an entry), which may have grown.
+    Returns whether the goal was found, how many nodes were expanded, and the work arrays, which may
+    have grown.
     """
+    (near, width), (labels, stamp), (heap, nodes) = grid, written, work
     steps = ROW_STEP * width + COLUMN_STEP
     tag = stamp << STAMP_SHIFT
     start_cell = (start // width, start % width)
@@ -158,7 +159,7 @@ def search(
         labels[node] = label | 1
         expanded += 1
         if node == goal:
-            return True, expanded, heap, nodes
+            return True, expanded, (heap, nodes)
         if size + 8 > heap.size or serial + 8 > nodes.size:
             heap, nodes = with_room(heap, size + 8), with_room(nodes, serial + 8)
         g = label >> G_SHIFT
@@ -187,4 +188,4 @@ def search(
             push(heap, size, f << F_SHIFT | (SERIAL_BITS - serial))
             size += 1
             serial += 1
-    return False, expanded, heap, nodes
+    return False, expanded, (heap, nodes)

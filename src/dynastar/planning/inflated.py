@@ -9,7 +9,7 @@ from dynastar.clearance import inflate
 from dynastar.planning.bounds import check_window
 from dynastar.planning.parts import Parts, find_parts
 from dynastar.planning.search import Cell, Cells, SearchGrid
-from dynastar.planning.segments import first_contact, is_clear, mask_bytes
+from dynastar.planning.segments import CellPoint, first_contact, is_clear, mask_bytes
 
 Mask = npt.NDArray[np.bool_]
 Point = tuple[float, float]
@@ -87,7 +87,8 @@ class InflatedGrid:
         for r, c in near:
             if not search.is_free((r, c)):
                 continue
-            if is_clear(self.bytes, *point, r + 0.5, c + 0.5, self.radius):
+            centre = CellPoint(r + 0.5, c + 0.5)
+            if is_clear(self.bytes, CellPoint(*point), centre, self.radius):
                 return r, c
         return None
 

@@ -5,6 +5,8 @@ blocked cells of every row and of every column are kept as bits, so that a jump 
 a time. A line's bits are those of its neighbours behind a corner, seen in the direction of travel.
 """
 
+from typing import NamedTuple
+
 import cv2
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +21,8 @@ from dynastar.planning.labels import (
     STAMP_BITS,
     STAMP_SHIFT,
     STRAIGHT,
-    Ints,
+    Heap,
+    Labels,
     octile,
     with_room,
 )  # fmt: skip
@@ -30,9 +33,11 @@ from dynastar.planning.neighbours import (
     NO_DIRECTION,
     ROW_STEP,
     Bytes,
+    Padded,
 )
 
 Words = npt.NDArray[np.uint64]
+Lines = tuple[Words, Words]  # the bits of all rows, and those of all columns
 
 TOP = np.uint64(63)
 
@@ -137,32 +142,38 @@ def shorter(label: int, tag: int, g: int, d: int) -> int:
     return label
 
 
+class Used(NamedTuple):
+    """How many keys the heap holds, and the next serial number."""
+
+    size: int
+    serial: int
+
+
 @inner
-def enter(
-    labels: Ints, tag: int, node: int, g: int, d: int, h: int,
-    heap: Ints, nodes: npt.NDArray[np.int32], size: int, serial: int,
-) -> tuple[int, int]:  # fmt: skip
+def enter(written: Labels, work: Heap, used: Used, node: int, g: int, d: int, h: int) -> Used:
     """Label a node and put it into the open list, if the way is shorter than what is known."""
-    there = labels[node]
+    (labels, stamp), (heap, nodes) = written, work
+    there, tag = labels[node], stamp << STAMP_SHIFT
     if (there & STAMP_BITS) == tag and ((there & 1) or (there >> G_SHIFT) <= g):
-        return size, serial
+        return used
     labels[node] = g << G_SHIFT | tag | d << DIRECTION_SHIFT
-    nodes[serial] = node
-    push(heap, size, (g + h) << F_SHIFT | (SERIAL_BITS - serial))
-    return size + 1, serial + 1
+    nodes[used.serial] = node
+    push(heap, used.size, (g + h) << F_SHIFT | (SERIAL_BITS - used.serial))
+    return Used(used.size + 1, used.serial + 1)
 
 
 @njit(cache=True)
 def jump_search(
-    near: Bytes, rows: Words, columns: Words, width: int, labels: Ints, stamp: int,
-    start: int, goal: int, heap: Ints, nodes: npt.NDArray[np.int32],
-) -> tuple[bool, int, Ints, npt.NDArray[np.int32]]:  # fmt: skip
-    """Expand jump points from ``start`` until ``goal`` is closed. Writes ``labels``.
+    grid: Padded, lines: Lines, written: Labels, start: int, goal: int, work: Heap
+) -> tuple[bool, int, Heap]:
+    """Expand jump points from ``start`` until ``goal`` is closed. Writes ``written``.
 
     No way turns round a corner on a diagonal: it is followed to its end, and the jumps to either
     side of it are entered. The cell where such a jump begins is labelled, but not entered. Returns
     what ``heap_kernel.search`` does.
     """
+    (near, width), (rows, columns) = grid, lines
+    (labels, stamp), (heap, nodes) = written, work
     steps = ROW_STEP * width + COLUMN_STEP
     tag = stamp << STAMP_SHIFT
     goal_y, goal_x = goal // width, goal % width
@@ -170,19 +181,20 @@ def jump_search(
     labels[start] = tag | NO_DIRECTION << DIRECTION_SHIFT
     nodes[0] = start
     heap[0] = SERIAL_BITS
-    size, serial, expanded = 1, 1, 0
-    while size > 0:
-        node = np.int64(nodes[SERIAL_BITS - (pop(heap, size) & SERIAL_BITS)])
-        size -= 1
+    used, expanded = Used(1, 1), 0
+    while used.size > 0:
+        node = np.int64(nodes[SERIAL_BITS - (pop(heap, used.size) & SERIAL_BITS)])
+        used = Used(used.size - 1, used.serial)
         label = labels[node]
         if label & 1:
             continue
         labels[node] = label | 1
         expanded += 1
         if node == goal:
-            return True, expanded, heap, nodes
-        if size + most > heap.size or serial + most > nodes.size:
-            heap, nodes = with_room(heap, size + most), with_room(nodes, serial + most)
+            return True, expanded, (heap, nodes)
+        if used.size + most > heap.size or used.serial + most > nodes.size:
+            heap = with_room(heap, used.size + most)
+            nodes = with_room(nodes, used.serial + most)
         g = label >> G_SHIFT
         y, x = node // width, node % width
         untried = np.uint64(CANONICAL[((label >> DIRECTION_SHIFT) & 15) << 8 | near[node]])
@@ -196,7 +208,7 @@ def jump_search(
                     at, at_y, at_x = at + steps[d], at_y + ROW_STEP[d], at_x + COLUMN_STEP[d]
                     at_g += DIAGONAL
                     if at == goal:
-                        size, serial = enter(labels, tag, at, at_g, d, 0, heap, nodes, size, serial)
+                        used = enter(written, (heap, nodes), used, at, at_g, d, 0)
                         break
                 for turn in range(diagonal + 1):  # the two sides of a diagonal, or straight on
                     side = (d + diagonal - 2 * turn) & 7
@@ -205,10 +217,9 @@ def jump_search(
                         labels[at] = shorter(labels[at], tag, at_g, d)
                         end_y = at_y + cells * ROW_STEP[side]
                         end_x = at_x + cells * COLUMN_STEP[side]
-                        size, serial = enter(
-                            labels, tag, at + cells * steps[side], at_g + cells * STRAIGHT, side,
-                            octile(end_y - goal_y, end_x - goal_x), heap, nodes, size, serial,
-                        )  # fmt: skip
+                        end, end_g = at + cells * steps[side], at_g + cells * STRAIGHT
+                        h = octile(end_y - goal_y, end_x - goal_x)
+                        used = enter(written, (heap, nodes), used, end, end_g, side, h)
                 if not diagonal:
                     break
-    return False, expanded, heap, nodes
+    return False, expanded, (heap, nodes)

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from dynastar.compiled import njit
 
 Bytes = npt.NDArray[np.uint8]
+Padded = tuple[Bytes, int]  # ``near`` of all nodes, and the number of nodes in a row
 
 # Directions 0 to 7 go round; the odd ones are diagonal.
 ROW_STEP = np.array([1, 1, 0, -1, -1, -1, 0, 1])

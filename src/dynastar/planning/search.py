@@ -70,15 +70,14 @@ class SearchGrid:
         find_near(ringed, self.near[1:-1, 1:-1])
         self._sums: npt.NDArray[np.int32] | None = None
         self._recounts = False
-        self._lines: tuple[jump_kernel.Words, jump_kernel.Words] | None = None
+        self._lines: jump_kernel.Lines | None = None
         self._jumps: bool | None = None
         self._labels = np.zeros(0, np.int64)  # made by the first search
         self._stamp = 0
-        self._heads = np.empty(bucket_kernel.BUCKETS, np.int32)
         self._pool = np.empty(1024, np.int64)  # or the heap's keys
         self._nodes = np.empty(1024, np.int32)
         self._tree: GoalTree | None = None
-        self._last = self._labels, 0  # what the last search wrote, and its stamp
+        self._last: labels.Labels = self._labels, 0  # what the last search wrote
 
     @property
     def occupied(self) -> npt.NDArray[np.bool_]:
@@ -111,7 +110,7 @@ class SearchGrid:
         self._recounts = True
 
     @property
-    def lines(self) -> tuple[jump_kernel.Words, jump_kernel.Words]:
+    def lines(self) -> jump_kernel.Lines:
         """The blocked cells as bits, row by row and column by column, for jumping."""
         if self._lines is None:
             rows, columns = self.near.shape
@@ -153,7 +152,8 @@ class SearchGrid:
             self._pack(row0 + 1, col0 + 1, bottom + 1, right + 1)
         self._jumps = None
         if self._tree is not None:
-            self._tree.changed(top + 1, left + 1, end + 1, side + 1, bool((change < 0).any()))
+            window = top + 1, left + 1, end + 1, side + 1
+            self._tree.changed(window, opened=bool((change < 0).any()))
 
     def forget(self) -> None:
         """Drop what is known about ways to the last goal: the next search starts from nothing."""
@@ -231,24 +231,23 @@ class SearchGrid:
             self._stamp = 0
         self._stamp += 1
         self._last = self._labels, self._stamp
-        from_to = self._node(start), -1 if goal is None else self._node(goal)
-        where = self._width, self._labels, self._stamp, *from_to
-        near = self.near.reshape(-1)
+        ends = self._node(start), -1 if goal is None else self._node(goal)
+        grid, heap = (self.near.reshape(-1), self._width), (self._pool, self._nodes)
         if algorithm == "jump":
-            found, expanded, self._pool, self._nodes = jump_kernel.jump_search(
-                near, *self.lines, *where, self._pool, self._nodes
+            found, expanded, (self._pool, self._nodes) = jump_kernel.jump_search(
+                grid, self.lines, self._last, *ends, heap
             )
             return found, expanded
         terms = terms_of(algorithm, heuristic)
         if algorithm in ("dijkstra", "astar") and terms.estimate == "octile":
             found, expanded, self._pool = bucket_kernel.shortest(
-                near, *where, terms.weight > 0.0, self._heads, self._pool
+                grid, self._last, *ends, terms.weight > 0.0, self._pool
             )
             return found, expanded
         sums = self.sums if terms.exponential else _NO_SUMS
         wanted = kernel_terms(terms, start, goal or start, int(sums[-1, -1]), self._cell)
-        found, expanded, self._pool, self._nodes = heap_kernel.search(
-            near, sums, *where, wanted, self._pool, self._nodes
+        found, expanded, (self._pool, self._nodes) = heap_kernel.search(
+            grid, sums, self._last, *ends, wanted, heap
         )
         return found, expanded
 
@@ -260,7 +259,7 @@ class SearchGrid:
         if self._tree is None:
             self._tree = GoalTree(self.near)
         found, expanded = self._tree.search(self._node(start), self._node(goal))
-        self._last = self._tree.searched, self._tree.stamp
+        self._last = self._tree.searched
         return self._tree.trace() if found else None, expanded
 
     def _prefers_jumps(self) -> bool:
@@ -277,11 +276,11 @@ class SearchGrid:
         jump_kernel.pack(self.near, columns, left, top, right, bottom, upright=True)
 
     def _trace(self, goal: Cell) -> tuple[Cells, float]:
-        return labels.trace(self._labels, self._stamp, self._width, self._node(goal))
+        return labels.trace(self._last, self._width, self._node(goal))
 
     def _closed(self) -> npt.NDArray[np.int32]:
         """The nodes that the last search closed, in order."""
-        return labels.closed_nodes(*self._last)
+        return labels.closed_nodes(self._last)
 
     def _node(self, cell: Cell) -> int:
         return (cell[0] + 1) * self._width + cell[1] + 1

@@ -6,8 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from dynastar.compiled import allocating, inner, njit
-from dynastar.planning.segments import Bytes, is_clear, mask_bytes, norm
-from dynastar.planning.taut_kernel import pulled_bend
+from dynastar.planning.segments import Bytes, CellPoint, distance, is_clear, mask_bytes, norm
+from dynastar.planning.taut_kernel import Part, pulled_bend
 
 Points = npt.NDArray[np.float64]
 
@@ -19,12 +19,31 @@ SMALLEST_CUT = 0.05  # cells
 STRAIGHT_ENOUGH = 0.9998  # cosine of a bend (about 1 degree) that needs no rounding
 
 
+@inner
+def point(points: Points, i: int) -> CellPoint:
+    """Row ``i`` of a polyline."""
+    return CellPoint(points[i, 0], points[i, 1])
+
+
+@inner
+def put(line: Points, i: int, at: CellPoint) -> None:
+    """Write a point to row ``i`` of a polyline, by numbers: a slice takes long to compile."""
+    line[i, 0], line[i, 1] = at.y, at.x
+
+
+@inner
+def append(line: Points, count: int, at: CellPoint) -> int:
+    """Write a point after the first ``count`` points of a polyline. Returns the new number."""
+    put(line, count, at)
+    return count + 1
+
+
 @njit(cache=True)
 def polyline_length(points: Points) -> float:
     """Length of a polyline (n, 2)."""
     length = 0.0
     for i in range(len(points) - 1):
-        length += norm(points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1])
+        length += distance(point(points, i), point(points, i + 1))
     return length
 
 
@@ -33,20 +52,15 @@ def bends(points: Points, line: Points) -> int:
     """Copy a polyline's ends and the points where it bends to ``line``. Returns their number."""
     count = 0
     for i in range(len(points)):
+        here = point(points, i)
         if 0 < i < len(points) - 1:
-            by, bx = points[i, 0] - points[i - 1, 0], points[i, 1] - points[i - 1, 1]
-            ay, ax = points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1]
+            before, after = point(points, i - 1), point(points, i + 1)
+            by, bx = here.y - before.y, here.x - before.x
+            ay, ax = after.y - here.y, after.x - here.x
             if bx * ay == by * ax and by * ay + bx * ax > 0.0:
                 continue
-        line[count, 0], line[count, 1] = points[i, 0], points[i, 1]
-        count += 1
+        count = append(line, count, here)
     return count
-
-
-@njit(cache=True)
-def gap(points: Points, i: int, y: float, x: float) -> float:
-    """Distance from a polyline's point ``i`` to (y, x)."""
-    return norm(y - points[i, 0], x - points[i, 1])
 
 
 @njit(cache=True)
@@ -60,14 +74,13 @@ def leave_out(
     count = 1
     moved[0] = False
     for i in range(1, n):
-        y, x = line[i, 0], line[i, 1]
+        here = point(line, i)
         dropped = False
-        if count >= 2 and is_clear(blocked, line[count - 2, 0], line[count - 2, 1], y, x, radius):
+        if count >= 2 and is_clear(blocked, point(line, count - 2), here, radius):
             count -= 1
             moved[count - 1] = dropped = True
-        line[count, 0], line[count, 1] = y, x
         moved[count] = dropped
-        count += 1
+        count = append(line, count, here)
     return count
 
 
@@ -85,31 +98,30 @@ def pull_taut(blocked: Bytes, points: Points, radius: float) -> Points:
     kept = np.empty(most, np.bool_)
     n = bends(points, line)
     for _ in range(ROUNDS):
-        pulled[0, 0], pulled[0, 1] = line[0, 0], line[0, 1]
+        put(pulled, 0, point(line, 0))
         fresh[0], kept[0] = False, moved[0]
         count, changed, straightened = 1, False, 0
         for i in range(1, n):
-            y, x = line[i, 0], line[i, 1]
-            fresh_here = False
+            here, fresh_here = point(line, i), False
             if straightened == IN_A_ROW:
                 straightened = 0
             elif count >= 2:
                 a, b = count - 2, count - 1
                 if moved[i] or fresh[a] or fresh[b] or kept[a] or kept[b]:
-                    ay, ax, by, bx = pulled[a, 0], pulled[a, 1], pulled[b, 0], pulled[b, 1]
-                    how, py, px, qy, qx = pulled_bend(blocked, ay, ax, by, bx, y, x, radius)
-                    straightened = straightened + 1 if how == 0 else 0
-                    if how == 0:
+                    part = Part(point(pulled, a), point(pulled, b), here)
+                    bend = pulled_bend(blocked, part, radius)
+                    straightened = straightened + 1 if bend.number == 0 else 0
+                    if bend.number == 0:
                         count = b
                         fresh[a] = fresh_here = changed = True
-                    elif how == 1 or (how == 2 and count + 1 + n - i <= most):
-                        pulled[b, 0], pulled[b, 1] = py, px
+                    elif bend.number == 1 or (bend.number == 2 and count + 1 + n - i <= most):
+                        put(pulled, b, bend.first)
                         fresh[b] = changed = True
-                        if how == 2:
-                            pulled[count, 0], pulled[count, 1] = qy, qx
+                        if bend.number == 2:
+                            put(pulled, count, bend.last)
                             fresh[count], kept[count] = True, False
                             count += 1
-            pulled[count, 0], pulled[count, 1] = y, x
+            put(pulled, count, here)
             fresh[count], kept[count] = fresh_here, moved[i]
             count += 1
         n = count
@@ -130,30 +142,26 @@ def join_close(blocked: Bytes, points: Points, radius: float) -> Points:
     count = 1
     i = 1
     while i < len(points):
-        if (
-            count >= 2
-            and i + 1 < len(points)
-            and gap(points, i, line[count - 1, 0], line[count - 1, 1]) < FINEST
-        ):
-            ay, ax = line[count - 2, 0], line[count - 2, 1]
-            dy, dx = points[i + 1, 0], points[i + 1, 1]
-            uy, ux = line[count - 1, 0] - ay, line[count - 1, 1] - ax
-            ty, tx = points[i, 0] - dy, points[i, 1] - dx
-            across = ux * ty - uy * tx
-            if across != 0.0:
-                s = ((dx - ax) * ty - (dy - ay) * tx) / across
-                y, x = ay + s * uy, ax + s * ux
-                if (
-                    s > 0.0
-                    and gap(line, count - 1, y, x) < FINEST
-                    and is_clear(blocked, ay, ax, y, x, radius)
-                    and is_clear(blocked, y, x, dy, dx, radius)
-                ):
-                    line[count - 1, 0], line[count - 1, 1] = y, x
-                    i += 1
-                    continue
-        line[count, 0], line[count, 1] = points[i, 0], points[i, 1]
-        count += 1
+        here = point(points, i)
+        if count >= 2 and i + 1 < len(points):
+            a, b, d = point(line, count - 2), point(line, count - 1), point(points, i + 1)
+            if distance(here, b) < FINEST:
+                uy, ux = b.y - a.y, b.x - a.x
+                ty, tx = here.y - d.y, here.x - d.x
+                across = ux * ty - uy * tx
+                if across != 0.0:
+                    s = ((d.x - a.x) * ty - (d.y - a.y) * tx) / across
+                    meeting = CellPoint(a.y + s * uy, a.x + s * ux)
+                    if (
+                        s > 0.0
+                        and distance(b, meeting) < FINEST
+                        and is_clear(blocked, a, meeting, radius)
+                        and is_clear(blocked, meeting, d, radius)
+                    ):
+                        put(line, count - 1, meeting)
+                        i += 1
+                        continue
+        count = append(line, count, here)
         i += 1
     return line[:count].copy()
 
@@ -162,34 +170,27 @@ def join_close(blocked: Bytes, points: Points, radius: float) -> Points:
 def bevel(blocked: Bytes, points: Points, radius: float, largest: float) -> Points:
     """Cut every corner once, up to ``largest`` cells from it, as far as the disc can follow."""
     result = np.empty((2 * len(points), 2))
-    count = append(result, 0, points[0, 0], points[0, 1])
+    count = append(result, 0, point(points, 0))
     for i in range(1, len(points) - 1):
-        y, x = points[i, 0], points[i, 1]
-        back_y, back_x = points[i - 1, 0] - y, points[i - 1, 1] - x
-        ahead_y, ahead_x = points[i + 1, 0] - y, points[i + 1, 1] - x
+        before, here, after = point(points, i - 1), point(points, i), point(points, i + 1)
+        back_y, back_x = before.y - here.y, before.x - here.x
+        ahead_y, ahead_x = after.y - here.y, after.x - here.x
         back_length, ahead_length = norm(back_y, back_x), norm(ahead_y, ahead_x)
         cut = min(largest, 0.4 * back_length, 0.4 * ahead_length)
         cosine = -(back_y * ahead_y + back_x * ahead_x) / max(back_length * ahead_length, 1e-12)
         done = cosine > STRAIGHT_ENOUGH
         while not done and cut >= SMALLEST_CUT:
             back, ahead = cut / back_length, cut / ahead_length
-            ay, ax = y + back_y * back, x + back_x * back
-            by, bx = y + ahead_y * ahead, x + ahead_x * ahead
-            done = is_clear(blocked, ay, ax, by, bx, radius)
+            a = CellPoint(here.y + back_y * back, here.x + back_x * back)
+            b = CellPoint(here.y + ahead_y * ahead, here.x + ahead_x * ahead)
+            done = is_clear(blocked, a, b, radius)
             if done:
-                count = append(result, append(result, count, ay, ax), by, bx)
+                count = append(result, append(result, count, a), b)
             cut *= 0.5
         if not done or cosine > STRAIGHT_ENOUGH:
-            count = append(result, count, y, x)
-    count = append(result, count, points[-1, 0], points[-1, 1])
+            count = append(result, count, here)
+    count = append(result, count, point(points, -1))
     return result[:count].copy()
-
-
-@inner
-def append(line: Points, count: int, y: float, x: float) -> int:
-    """Write a point to row ``count`` of a line, by numbers: a slice takes long to compile."""
-    line[count, 0], line[count, 1] = y, x
-    return count + 1
 
 
 @njit(cache=True)

@@ -19,7 +19,8 @@ from dynastar.planning.labels import (
     STAMP_BITS,
     STAMP_SHIFT,
     STRAIGHT,
-    Ints,
+    Heap,
+    Labels,
     octile,
     with_room,
 )  # fmt: skip
@@ -29,8 +30,10 @@ from dynastar.planning.neighbours import (
     LEGAL,
     NO_DIRECTION,
     ROW_STEP,
-    Bytes,
+    Padded,
 )
+
+Window = tuple[int, int, int, int]  # top, left, bottom, right; padded, without the last two
 
 CUT = 15  # in place of the direction of a node whose way to the root was cut
 FAR = 1 << 62
@@ -44,14 +47,14 @@ def is_valid(label: int, stamp: int) -> bool:
 
 @njit(cache=True)
 def prune(
-    near: Bytes, width: int, tree: Ints, stamp: int,
-    top: int, left: int, bottom: int, right: int, stack: npt.NDArray[np.int32],
-) -> npt.NDArray[np.int32]:  # fmt: skip
+    grid: Padded, known: Labels, window: Window, stack: npt.NDArray[np.int32]
+) -> npt.NDArray[np.int32]:
     """Mark the nodes of a tree whose way to the root contains a step that is no longer legal.
 
-    ``near`` has changed in rows ``top`` to ``bottom`` and columns ``left`` to ``right`` (padded, the
-    ends not included). Returns ``stack``, a work array, which may have grown.
+    ``near`` has changed in a window. Returns ``stack``, a work array, which may have grown.
     """
+    (near, width), (tree, stamp) = grid, known
+    top, left, bottom, right = window
     steps = ROW_STEP * width + COLUMN_STEP
     closed = stamp << STAMP_SHIFT | 1
     size = 0
@@ -82,17 +85,18 @@ def prune(
 
 @njit(cache=True)
 def search_again(
-    near: Bytes, width: int, tree: Ints, tree_stamp: int, tree_start: int, goal: int,
-    labels: Ints, stamp: int, start: int, heap: Ints, nodes: npt.NDArray[np.int32],
-) -> tuple[int, int, int, Ints, npt.NDArray[np.int32]]:  # fmt: skip
-    """Expand from ``start`` until the way to ``goal`` is known. Writes ``labels``.
+    grid: Padded, known: Labels, tree_start: int, goal: int, written: Labels, start: int, work: Heap
+) -> tuple[int, int, int, Heap]:
+    """Expand from ``start`` until the way to ``goal`` is known. Writes ``written``.
 
-    ``tree`` holds the labels of the search from ``goal`` that reached ``tree_start``. Returns the
+    ``known`` is the tree: what the search from ``goal`` wrote that reached ``tree_start``. Returns the
     last node of the new way and the node of the tree that it steps to (-1 if there is no way), how
     many nodes were expanded, and the work arrays, which may have grown.
     """
+    (near, width), (tree, tree_stamp) = grid, known
+    (labels, stamp), (heap, nodes) = written, work
     steps = ROW_STEP * width + COLUMN_STEP
-    tag, known = stamp << STAMP_SHIFT, tree_stamp << STAMP_SHIFT | 1
+    tag, closed = stamp << STAMP_SHIFT, tree_stamp << STAMP_SHIFT | 1
     goal_y, goal_x = goal // width, goal % width
     from_y, from_x = tree_start // width, tree_start % width
     length = tree[tree_start] >> G_SHIFT
@@ -124,7 +128,7 @@ def search_again(
             there = labels[neighbour]
             if (there & STAMP_BITS) == tag and ((there & 1) or (there >> G_SHIFT) <= g_new):
                 continue
-            in_tree = (tree[neighbour] & (STAMP_BITS | 1)) == known
+            in_tree = (tree[neighbour] & (STAMP_BITS | 1)) == closed
             h = tree[neighbour] >> G_SHIFT
             if in_tree and (tree[neighbour] >> DIRECTION_SHIFT) & 15 != CUT:
                 if g_new + h < best:
@@ -138,4 +142,4 @@ def search_again(
             push(heap, size, (g_new + h) << F_SHIFT | (SERIAL_BITS - serial))
             size += 1
             serial += 1
-    return last, meeting, expanded, heap, nodes
+    return last, meeting, expanded, (heap, nodes)
