@@ -156,7 +156,7 @@ def test_the_scenes_own_obstacles_and_walkers_are_erased():
     x, y = scene.scenery.world.movers[0]
     ask(scene, type="stroke", points=[[x, y]], radius=0.2, erase=True)
     assert np.isnan(scene.scenery.world.movers[0]).all()
-    with pytest.raises(InputError, match="no mover 0"):
+    with pytest.raises(InputError, match="no moving obstacle 0"):
         ask(scene, type="push", mover=0, vx=0.5, vy=0.0)
     ask(scene, type="reset")
     assert len(scene.scenery.world.obstacles) == count

@@ -15,7 +15,7 @@ MOST_POINTS = 200  # of a stroke
 Metres = Annotated[float, Field("a coordinate", "m", -1e6, 1e6)]
 Speed = Annotated[float, Field("a speed", "m/s", -3.0, 3.0)]
 Heading = Annotated[float | None, Field("any heading if null", "rad", -7.0, 7.0)]
-Number = Annotated[int, Field("a mover, from 0", "", 0, 10**6)]
+Number = Annotated[int, Field("a moving obstacle, from 0", "", 0, 10**6)]
 
 
 class Goals(NamedTuple):

@@ -128,7 +128,7 @@ class Scenery:
         """Sends a mover another way."""
         number = message.mover
         if number >= len(self._movers) or np.isnan(self._places()[number]).any():
-            raise InputError(f"there is no mover {number} to push")
+            raise InputError(f"there is no moving obstacle {number} to push")
         velocity = np.array([message.vx, message.vy])
         radius = self._movers[number].radius
         self._movers[number] = self._walker(self._places()[number], velocity, radius)

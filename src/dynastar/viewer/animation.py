@@ -139,7 +139,7 @@ def _draw_key(canvas: Canvas, episode: Episode) -> None:
     """The legend, in the lower strip, as far as it fits."""
     entries = [("robot and path driven", palette.DRIVEN), ("planned path", palette.FIRST_PATH)]
     if len(episode.mover_radii):
-        entries.append(("mover", palette.MOVER))
+        entries.append(("moving obstacle", palette.MOVER))
     if episode.obstacles:
         entries.append(("unmapped obstacle", palette.OBSTACLE))
     entries.append(("mapped obstacle", palette.OCCUPIED))

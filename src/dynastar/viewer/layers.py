@@ -145,18 +145,18 @@ def _number(axes: Axes, place: Floats, way: Floats, number: str) -> None:
 
 
 def show_tracks(axes: Axes, movers: "Sequence[Mover]") -> list[Artist]:
-    """Where movers begin, as discs, and the ways they take."""
+    """Where moving obstacles begin, as discs, and the ways they take."""
     if not movers:
         return []
     style: Style = {"color": palette.MOVER, "linewidth": 1.0, "linestyle": (0, (4, 2))}
     for mover in movers:
         axes.plot(*mover.points.T, zorder=4, **style)
         axes.add_patch(Circle(tuple(mover.points[0]), mover.radius, color=palette.MOVER, zorder=5))
-    return [Line2D([], [], label=f"way of a mover ({len(movers)})", **style)]
+    return [Line2D([], [], label=f"way of a moving obstacle ({len(movers)})", **style)]
 
 
 def show_movers(axes: Axes, episode: Episode, view: View) -> list[Artist]:
-    """Movers: a disc where each was nearest to the robot, and its track as dots."""
+    """Moving obstacles: a disc where each was nearest to the robot, and its track as dots."""
     driven = episode.trajectory
     spacing = view.diagonal / 130.0
     discs, dots = [], []
@@ -174,9 +174,9 @@ def show_movers(axes: Axes, episode: Episode, view: View) -> list[Artist]:
     axes.add_collection(PatchCollection(discs, zorder=7, **style))
     disc = Line2D([], [], linestyle="none", marker="o", markersize=6)
     disc.set(markerfacecolor=palette.MOVER, markeredgecolor=palette.MOVER_EDGE)
-    disc.set_label("mover where it came nearest")
+    disc.set_label("moving obstacle where it came nearest")
     track_entry = Line2D([], [], linestyle=(0, (1, 1.6)), color=palette.MOVER, linewidth=1.6)
-    track_entry.set_label("track of a mover")
+    track_entry.set_label("way of a moving obstacle")
     return [disc, track_entry]
 
 

@@ -118,7 +118,7 @@ def draw_unaware(
         Patch(
             facecolor=palette.OBSTACLE, edgecolor=palette.OBSTACLE_EDGE, label="unknown obstacle"
         ),
-        _mover_entry("mover"),
+        _mover_entry("moving obstacle"),
         Line2D([], [], linestyle=":", color=palette.MOVER, linewidth=1.4, label="its lane"),
     ]
     if len(touches):
@@ -160,7 +160,7 @@ def draw_driven(episode: Episode, width: float = COLUMN) -> Figure:
         Patch(
             facecolor=palette.OBSTACLE, edgecolor=palette.OBSTACLE_EDGE, label="unknown obstacle"
         ),
-        _mover_entry("mover, when nearest"),
+        _mover_entry("moving obstacle, when nearest"),
         Line2D([], [], label="its track", **track),
     ]
     legend(figure, entries, 2)
