@@ -14,7 +14,7 @@ import pickle
 import shutil
 import stat
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, get_type_hints
 
@@ -139,7 +139,8 @@ class _CacheFile(IndexDataCacheFile):  # type: ignore[misc]
 def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     """numba's decorator of this name, with a cache that survives damaged files.
 
-    Division follows IEEE 754, as NumPy's does: kernels that check for 0 take longer to compile.
+    Division follows IEEE 754, as NumPy's does: kernels that check for 0 take longer to compile. A kernel
+    that calls this one with a constant does not have it compiled once more for that constant.
     """
     options.setdefault("error_model", "numpy")
 
@@ -147,6 +148,13 @@ def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
         kernel = numba.njit(**options)(function)
         if options.get("cache"):
             kernel._cache._cache_file.__class__ = _CacheFile
+        template = kernel.get_call_template
+
+        def of_kinds(args: Iterable[Any], keywords: dict[str, Any]) -> Any:
+            kinds = {name: types.unliteral(kind) for name, kind in keywords.items()}
+            return template(tuple(map(types.unliteral, args)), kinds)
+
+        kernel.get_call_template = of_kinds
         return kernel
 
     return compiled

@@ -7,7 +7,7 @@ import time
 from dynastar import compiled
 from dynastar.terminal import progress_bar
 
-PARTS = "plan", "drive"
+PARTS = "sense_and_plan", "drive"
 FILES = 400  # that the cache holds, about, when all is compiled
 WAIT = 0.2  # s
 WORDS = "compiling kernels, once for this version"
@@ -23,7 +23,7 @@ def prepare() -> float:
         return 0.0
     began = time.perf_counter()
     if not sys.stderr.isatty():
-        print(f"{WORDS}: half a minute to a minute on two cores", file=sys.stderr)
+        print(f"{WORDS}: about half a minute on two cores", file=sys.stderr)
     children = [_start(part) for part in PARTS]
     try:
         _wait(children)
@@ -61,15 +61,17 @@ def _wait(children: "list[subprocess.Popen[bytes]]") -> None:
             bar.refresh()
 
 
-def plan() -> None:
-    """Compile the kernels of the default planners."""
+def sense_and_plan() -> None:
+    """Compile the kernels of sensing, then those of the planners that a navigator calls."""
     from dynastar.planning.compiling import warm_up_default
+    from dynastar.simulation.warming import warm_up_sensing
 
+    warm_up_sensing()
     warm_up_default()
 
 
 def drive() -> None:
-    """Compile the kernels of the navigator and the simulator."""
+    """Compile the kernels of the dynamic window, and all of a drive that is not compiled by then."""
     from dynastar.simulation import warm_up
 
     warm_up()

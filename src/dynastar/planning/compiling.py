@@ -1,4 +1,4 @@
-"""Compiling or loading the kernels of the default planners."""
+"""Compiling or loading the kernels that a navigator plans with."""
 
 import functools
 
@@ -12,15 +12,16 @@ from dynastar.planning.search import SearchGrid
 
 @functools.cache
 def warm_up_default() -> None:
-    """Compile or load the kernels of the default planners, of a way out and of replanning."""
+    """Compile or load the kernels of paths, of a way out and of replanning."""
     rng = np.random.default_rng(0)
     blocked = rng.random((30, 30)) < 0.3
     blocked[[0, -1]] = blocked[:, [0, -1]] = False  # so many corners, and yet a way round
+    search = SearchGrid(blocked)
+    row, column = map(int, search.search((0, 0), (29, 29), "jump").cells[3])
+    find_parts(search.near)
     grid = OccupancyGrid(100 * blocked.astype(np.int8), 1.0)
     for planner in "improved", "auto":
         plan(grid, (0.5, 0.5), (29.5, 29.5), planner, explored=True)
-    search = SearchGrid(blocked)
-    row, column = map(int, search.search((0, 0), (29, 29), "auto").cells[3])
-    search.update(row, column, [[True]])
-    find_parts(search.near)
-    search.search((0, 0), (29, 29), "auto")
+    for _ in range(2):
+        search.search((0, 0), (29, 29), "auto")
+        search.update(row, column, [[True]])
