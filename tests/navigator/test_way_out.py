@@ -8,7 +8,7 @@ import pytest
 from driving import room
 from dynastar.footprint import Footprint
 from dynastar.geometry import Goal, Pose2D
-from dynastar.navigator.way_out import LOST, NEAR, TURNED, WayOut, joined
+from dynastar.navigator.way_out import LOST, NEAR, TURNED, WayOut, Waypoint, joined
 from dynastar.robot import Lidar, Limits, Robot
 from dynastar.simulation import Noise, Scenario, run
 
@@ -59,7 +59,7 @@ def test_a_long_robot_gets_through_two_doors_that_are_not_opposite(apart, second
 def on_a_way(*rows):
     """A way out that has been found."""
     way_out = WayOut(LIMITS, 6.0)
-    way_out.way, way_out._since = np.array(rows, float), 0.0
+    way_out.way, way_out._since = [Waypoint(*row) for row in rows], 0.0
     return way_out
 
 
@@ -68,7 +68,7 @@ def test_moves_end_in_order_where_the_robot_has_come_to_them():
     assert way_out.goes_on(Pose2D(1.0, 0.0, 0.0), 1.0)
     assert len(way_out.way) == 3
     assert way_out.goes_on(Pose2D(0.9 + 0.5 * NEAR, 0.0, 0.0), 2.0)
-    assert way_out.way[0, 3] == 0.0
+    assert way_out.way[0].ahead == 0.0
     assert way_out.goes_on(Pose2D(0.9, 0.0, 0.4 - 0.5 * TURNED), 3.0)
     assert len(way_out.way) == 1
     assert not way_out.goes_on(Pose2D(1.0, 0.04, 0.4), 4.0)
@@ -90,11 +90,11 @@ def test_turns_are_joined_but_still_lead_the_same_way_round(count, side):
         *((0.1, 0.0, step * (k + 1), 0) for k in range(count)),
         (0.2, 0.0, 0.0, -1),
     ]
-    found = joined(np.array(rows, float))
-    headings = np.array([row[2] for row in found if row[3] == 0.0])
+    found = joined([Waypoint(*row) for row in rows])
+    headings = np.array([move.heading for move in found if move.ahead == 0.0])
     assert len(headings) == -(-count // 15)
     turned = np.diff(headings, prepend=0.0)
     assert np.all(side * turned > 0.0)
     assert np.all(np.abs(turned) < math.pi)
     assert headings[-1] == step * count
-    assert list(found[[0, -1], 3]) == [1, -1]
+    assert (found[0].ahead, found[-1].ahead) == (1, -1)

@@ -7,6 +7,7 @@ of one length, ahead and back, and turns on the spot.
 
 import heapq
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,12 +23,30 @@ STEP, BIN = 2.0, 1.6  # cells, the length of a move and the side of a bin
 BACKING = 3.0  # m ahead that a metre back is as dear as: lidars look ahead
 MOST = 3000  # moves that are checked at most
 TURN = math.tau / HEADINGS
-MOVES = (1, 0), (1, 1), (1, -1), (-1, 0), (-1, 1), (-1, -1), (0, 1), (0, -1)  # steps, turns
 NODE = np.dtype(
     [(name, np.float64) for name in Pose._fields]
     + [(name, np.int64) for name in ("before", "move", "is_settled")]
 )
 FIRST = -1  # in place of a move
+
+
+class Move(NamedTuple):
+    """Steps ahead and turns to the left."""
+
+    ahead: int
+    left: int
+
+
+class Arc(NamedTuple):
+    """The length (m) and the angle (rad) of a move."""
+
+    length: float
+    angle: float
+
+
+AHEAD = Move(1, 0), Move(1, 1), Move(1, -1)
+BACK = Move(-1, 0), Move(-1, 1), Move(-1, -1)
+MOVES = *AHEAD, *BACK, Move(0, 1), Move(0, -1)
 
 
 @inner
@@ -55,14 +74,14 @@ def is_open(scene, rules, start, pose, arc, spare):
     way; what lies behind may not.
     """
     around, body = scene.around, rules.body
-    distance = scene.distance_to_obstacle if arc[0] > 0.0 else around.closed.distance
+    distance = scene.distance_to_obstacle if arc.length > 0.0 else around.closed.distance
     closed = Closed(distance, around.closed.occupied, around.closed.hits)
     margin = around.margin_to_closed + spare
     near = margin + distance.resolution + body.probe_error
-    sweep = max(abs(arc[0]), abs(arc[1]) * body.circumscribed)
+    sweep = max(abs(arc.length), abs(arc.angle) * body.circumscribed)
     parts, at = int(math.ceil(sweep / distance.resolution)), pose
     for k in range(1, parts + 1):
-        at = moved(pose, arc[0] * k / parts, arc[1] * k / parts)
+        at = moved(pose, arc.length * k / parts, arc.angle * k / parts)
         if least_clearance(distance, body, at) >= near:
             continue
         if clearance_slack(closed, body, margin, start, at) < -ROUNDING:
@@ -97,15 +116,15 @@ def way_to(nodes, last):
     for i in range(count - 1, -1, -1):
         node = nodes[at]
         way[i, 0], way[i, 1], way[i, 2] = node.x, node.y, math.atan2(node.sin, node.cos)
-        way[i, 3] = MOVES[node.move][0]
+        way[i, 3] = MOVES[node.move].ahead
         at = node.before
     return way
 
 
 @inner
 def arc_of(move, step):
-    """The way ahead (m) and the turn (rad) of a move."""
-    return MOVES[move][0] * step, MOVES[move][1] * TURN
+    """The arc of a move whose steps are ``step`` (m) long."""
+    return Arc(MOVES[move].ahead * step, MOVES[move].left * TURN)
 
 
 @njit(cache=True)
@@ -127,7 +146,7 @@ def search_poses(scene, rules, state, gain, spare):
         pose, before = start, at
         if move != FIRST:
             pose, arc = pose_of(nodes[before]), arc_of(move, step)
-            end = moved(pose, arc[0], arc[1])
+            end = moved(pose, arc.length, arc.angle)
             at = bin_of(end, start, side)
             if nodes[at].is_settled:
                 continue
@@ -139,15 +158,15 @@ def search_poses(scene, rules, state, gain, spare):
         if left_from(scene, rules, pose) <= target:
             return way_to(nodes, at)
         for k, (ahead, _) in enumerate(MOVES):
-            length, angle = arc_of(k, step)
-            end = moved(pose, length, angle)
+            arc = arc_of(k, step)
+            end = moved(pose, arc.length, arc.angle)
             to = bin_of(end, start, side)
             if to < 0 or nodes[to].is_settled or (ahead < 0 and rules.limits.v_min >= 0.0):
                 continue
             if not is_on_map(scene.cost_to_go.value, end.x, end.y):
                 continue
-            more = max(length, -BACKING * length) + abs(angle) * per_radian
-            if move != FIRST and MOVES[move][0] != ahead:
+            more = max(arc.length, -BACKING * arc.length) + abs(arc.angle) * per_radian
+            if move != FIRST and MOVES[move].ahead != ahead:
                 more += step
             left = max(0.0, left_from(scene, rules, end) - target)
             heapq.heappush(heap, (cost + more + left, cost + more, at, k))

@@ -1,9 +1,9 @@
 """How a robot gets on that is stuck although a path leads on: it drives a way over poses."""
 
 import math
-
-import numpy as np
-import numpy.typing as npt
+from collections.abc import Sequence
+from itertools import takewhile, zip_longest
+from typing import NamedTuple
 
 from dynastar.dwa.dwa import DynamicWindow, Stops
 from dynastar.dwa.motion import state_at
@@ -22,11 +22,19 @@ NEAR, LOST = 0.03, 0.5  # m from the end of a move: it has ended, the robot is e
 TURNED = 0.05  # rad by which a turn may fall short
 
 
+class Waypoint(NamedTuple):
+    """A pose (m, rad), and how the robot comes there: ahead (1), back (-1) or by a turn (0)."""
+
+    x: float
+    y: float
+    heading: float
+    ahead: float
+
+
 class WayOut:
     """A way over poses to where the cost-to-go is lower, and how far the robot is on it.
 
-    The rows of ``way`` (n, 4) are those of ``search_poses``. A move that takes longer than ``patience``
-    (s) ends it.
+    A move that takes longer than ``patience`` (s) ends it.
     """
 
     def __init__(self, limits: Limits, patience: float) -> None:
@@ -36,7 +44,7 @@ class WayOut:
     def forget(self) -> None:
         """No way is looked for or driven."""
         self.is_wanted = False
-        self.way: npt.NDArray[np.float64] = np.empty((0, 4))
+        self.way: list[Waypoint] = []
         self._since = -math.inf
 
     def look(self, scene: Scene, window: DynamicWindow, pose: Pose2D, now: float) -> None:
@@ -45,19 +53,20 @@ class WayOut:
             return
         at, self._since = state_at(*pose, 0.0, 0.0), now
         for spare in SPARES:
-            self.way = joined(search_poses(scene, window.rules, at, GAIN, spare))
-            if len(self.way) > 0:
+            found = search_poses(scene, window.rules, at, GAIN, spare)
+            self.way = joined([Waypoint(*row) for row in found.tolist()])
+            if self.way:
                 return
 
     def goes_on(self, pose: Pose2D, now: float) -> bool:
         """Whether the robot is on a way that has not ended."""
-        while len(self.way) > 0 and self._has_ended(pose):
+        while self.way and self._has_ended(pose):
             self.way, self._since = self.way[1:], now
-        if len(self.way) == 0:
+        if not self.way:
             return False
-        if now - self._since > self.patience or math.dist(pose[:2], self.way[0, :2]) > LOST:
+        if now - self._since > self.patience or math.dist(pose[:2], self.way[0][:2]) > LOST:
             self.forget()
-        return len(self.way) > 0
+        return bool(self.way)
 
     def command(
         self,
@@ -72,41 +81,43 @@ class WayOut:
 
         ``in_vain`` as in ``turn_by``.
         """
-        *_, theta, kind = self.way[0]
-        if kind == 0.0:
-            angle = wrap_angle(theta - pose.theta)
+        move = self.way[0]
+        if move.ahead == 0.0:
+            angle = wrap_angle(move.heading - pose.theta)
             asked = turn_by(angle, TURNED, twist, self.limits, window.rules.period, in_vain)
         else:
-            asked = self._arc(pose, kind, scene.v_cap)
+            asked = self._arc(pose, move.ahead, scene.v_cap)
         return window.nearest(scene.around, stops, twist, asked)[0]
 
     def _has_ended(self, pose: Pose2D) -> bool:
-        x, y, theta, kind = self.way[0]
-        if kind == 0.0:
-            return abs(wrap_angle(theta - pose.theta)) <= TURNED
-        return kind * _seen_from(pose, x, y)[0] <= NEAR
+        x, y, heading, ahead = self.way[0]
+        if ahead == 0.0:
+            return abs(wrap_angle(heading - pose.theta)) <= TURNED
+        to_there, _ = _seen_from(pose, x, y)
+        return ahead * to_there <= NEAR
 
-    def _arc(self, pose: Pose2D, kind: float, v_cap: float) -> Twist:
-        """The speeds that lead on an arc to a pose a little farther on, but not past a change of kind."""
-        others = np.flatnonzero(self.way[:, 3] != kind)
-        run = self.way[: others[0]] if len(others) > 0 else self.way
+    def _arc(self, pose: Pose2D, sign: float, v_cap: float) -> Twist:
+        """The speeds that lead on an arc to a pose a little farther on, but not past a change of sign."""
+        run = list(takewhile(lambda move: move.ahead == sign, self.way))
         ahead, left = _seen_from(pose, *run[min(AIM, len(run) - 1)][:2])
         curvature = 2.0 * left / max(ahead**2 + left**2, NEAR**2)
         limits, end = self.limits, math.dist(pose[:2], run[-1][:2])
         stops = math.sqrt(2.0 * GENTLE_BRAKING * limits.v_brake * end)
         v = max(min(SPEED * limits.v_max, v_cap, stops), limits.v_least)
-        v = v if kind > 0.0 else -min(v, -limits.v_min)
+        v = v if sign > 0.0 else -min(v, -limits.v_min)
         v /= max(1.0, abs(v * curvature) / limits.omega_max)
         return Twist(v, v * curvature)
 
 
-def joined(way: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def joined(way: Sequence[Waypoint]) -> list[Waypoint]:
     """A way with one turn in place of several, each by less than half a turn: the same way round."""
-    keep, turns = np.ones(len(way), bool), 0
-    for k, kind in enumerate(way[:-1, 3]):
-        turns = turns + 1 if kind == 0.0 else 0
-        keep[k] = kind != 0.0 or way[k + 1, 3] != 0.0 or turns % (HEADINGS // 2 - 1) == 0
-    return way[keep]
+    kept, turns = [], 0
+    for move, following in zip_longest(way, way[1:]):
+        turns = turns + 1 if move.ahead == 0.0 else 0
+        is_last = turns == 0 or following is None or following.ahead != 0.0
+        if is_last or turns % (HEADINGS // 2 - 1) == 0:
+            kept.append(move)
+    return kept
 
 
 def _seen_from(pose: Pose2D, x: float, y: float) -> tuple[float, float]:
