@@ -1,5 +1,6 @@
 """What `dynastar run` leaves in a folder that has the results of an older run."""
 
+import errno
 from pathlib import Path
 from typing import Any
 
@@ -7,6 +8,7 @@ import pytest
 
 from dynastar.cli import run
 from dynastar.errors import InputError
+from dynastar.writing import written_aside
 
 
 def contents(folder: Path) -> dict[str, str]:
@@ -35,3 +37,19 @@ def test_a_folder_never_holds_files_of_two_runs(
     (tmp_path / "figure.png").mkdir()
     with pytest.raises(InputError, match=r"figure\.png: that is a folder"):
         run.write_folder(tmp_path, given, {}, gif=False)
+
+
+def test_a_full_disk_is_told_of_the_folder_that_was_asked_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def write_files(folder: Path, *given: Any) -> None:
+        with written_aside(folder / "episode.npz"):
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(run, "_write_files", write_files)
+    given: Any = None
+    with pytest.raises(InputError) as found:
+        run.write_folder(tmp_path, given, {}, gif=False)
+    file = tmp_path / "episode.npz"
+    assert str(found.value) == f"{file}: cannot be written (No space left on device)"
+    assert contents(tmp_path) == {}

@@ -116,7 +116,10 @@ def write_folder(folder: Path, episode: "Episode", summary: dict[str, Any], gif:
             )
     with tempfile.TemporaryDirectory(prefix=".results.", suffix=".aside", dir=folder) as made:
         aside = Path(made)
-        _write_files(aside, episode, summary, gif)
+        try:
+            _write_files(aside, episode, summary, gif)
+        except InputError as error:  # the folder that was asked for, not the one aside
+            raise InputError(str(error).replace(made, str(folder))) from None
         for name in FILES:
             (folder / name).unlink(missing_ok=True)
         for file in aside.iterdir():
