@@ -12,7 +12,7 @@ FIND_PYTHON = for python in python3.11 python3 python3.12 python3.13 python; do 
 	$$python -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2>/dev/null \
 	&& echo $$python && break; done
 
-.PHONY: help setup check test test-ros test-all dist docs pictures demo results bench clean
+.PHONY: help setup check test test-ros test-ros-0 test-ros-1 test-all dist docs pictures demo results bench clean
 
 help:
 	@echo "make setup   make .venv and install dynastar with its tools into it"
@@ -51,9 +51,16 @@ test: setup
 
 # In an environment of its own: the wheels of ROS 2 start Python anew to find their libraries.
 test-ros: $(ROS)/.installed
-	@if test -x $(ROS)/bin/pytest; then $(ROS)/bin/pytest -q tests/ros/nodes || { test $$? -ge 128 && \
-	echo "a library of ROS 2 crashed the tests; once more" && $(ROS)/bin/pytest -q tests/ros/nodes; }; \
+	@if test -x $(ROS)/bin/pytest; then $(MAKE) --no-print-directory -j 2 test-ros-0 test-ros-1; \
 	else echo "tests of the ROS 2 nodes skipped: their wheels cannot be installed here"; fi
+
+# Two processes, for most of the time is spent waiting; each has a ROS domain of its own.
+test-ros-0: ROS_TESTS = tests/ros/nodes --ignore tests/ros/nodes/test_nodes.py
+test-ros-1: ROS_TESTS = tests/ros/nodes/test_nodes.py
+test-ros-0 test-ros-1:
+	@export ROS_TEST_GROUP=$(subst test-ros-,,$@); \
+	$(ROS)/bin/pytest -q $(ROS_TESTS) || { test $$? -ge 128 && \
+	echo "a library of ROS 2 crashed the tests; once more" && $(ROS)/bin/pytest -q $(ROS_TESTS); }
 
 $(ROS)/.installed: pyproject.toml tests/ros/interfaces/build.sh
 	@python=$$($(FIND_PYTHON)); test -x $(ROS)/bin/python || $$python -m venv $(ROS)
