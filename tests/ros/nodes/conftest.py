@@ -16,8 +16,9 @@ import pytest
 pytest.importorskip("rclpy", reason="no rclpy here: `make test-ros` has an environment with it")
 
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
-GROUP = int(os.environ.get("ROS_TEST_GROUP", "0"))  # 0 or 1: two run side by side
-os.environ["ROS_DOMAIN_ID"] = str(2 * random.Random().randint(1, 49) + GROUP)
+os.environ["ROS_DOMAIN_ID"] = str(  # two groups of tests run side by side
+    2 * random.Random().randint(1, 49) + int(os.environ.get("ROS_TEST_GROUP", "0"))
+)
 os.environ.setdefault("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp")
 
 with warnings.catch_warnings():
