@@ -33,6 +33,19 @@ def test_a_program_that_uses_the_library_hears_nothing_of_it(tmp_path):
     assert not (tmp_path / "dynastar").exists()
 
 
+def test_a_kernel_is_not_compiled_once_more_for_a_constant():
+    @compiled.njit()
+    def called(array, i):
+        return array[i]
+
+    @compiled.njit()
+    def calling(array, i):
+        return called(array, 0) + called(array, 1) + called(array, i=-1) + called(array, i)
+
+    assert calling(np.array([1.0, 2.0, 4.0]), 1) == 9.0
+    assert len(called.signatures) == 1
+
+
 def test_kernels_are_kept_there_even_if_numba_was_imported_before(tmp_path):
     run("import numba; " + NORM, tmp_path)
     assert list((tmp_path / "dynastar").rglob("*.nbi"))

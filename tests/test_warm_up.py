@@ -5,6 +5,10 @@ import sys
 
 import pytest
 
+from dynastar.dwa.search import search
+from dynastar.guidance.marching import march
+from dynastar.simulation import warm_up
+
 # Compilations and loads from the cache while driving, for a few seconds; argv: data folder or "", suites.
 COUNT = """
 import sys
@@ -65,3 +69,9 @@ def test_driving_compiles_nothing_and_loads_nothing():
 @pytest.mark.data
 def test_nor_do_the_public_suites(data_dir):
     assert counted(str(data_dir), "barn", "dynabarn", "mrpb", "crowd", "maps") == "[] []"
+
+
+def test_the_choice_without_a_scan_is_of_the_kinds_that_a_drive_has():
+    """Else the dynamic window would be compiled once for it, and once more for a drive."""
+    warm_up()
+    assert len(search.signatures) == len(march.signatures) == 1

@@ -63,11 +63,11 @@ def _wait(children: "list[subprocess.Popen[bytes]]") -> None:
 
 def sense_and_plan() -> None:
     """Compile the kernels of sensing, then those of the planners that a navigator calls."""
-    from dynastar.planning.compiling import warm_up_default
+    from dynastar.planning.compiling import warm_up_planning
     from dynastar.simulation.warming import warm_up_sensing
 
     warm_up_sensing()
-    warm_up_default()
+    warm_up_planning()
 
 
 def drive() -> None:

@@ -11,7 +11,7 @@ from dynastar.planning.search import SearchGrid
 
 
 @functools.cache
-def warm_up_default() -> None:
+def warm_up_planning() -> None:
     """Compile or load the kernels of paths, of a way out and of replanning."""
     rng = np.random.default_rng(0)
     blocked = rng.random((30, 30)) < 0.3

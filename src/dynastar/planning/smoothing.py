@@ -135,6 +135,18 @@ def pull_taut(blocked: Bytes, points: Points, radius: float) -> Points:
     return line[:n].copy()
 
 
+@inner
+def crossing(a: CellPoint, b: CellPoint, c: CellPoint, d: CellPoint) -> tuple[bool, CellPoint]:
+    """Whether the ray from a by b meets the line c - d, and where."""
+    uy, ux = b.y - a.y, b.x - a.x
+    ty, tx = c.y - d.y, c.x - d.x
+    across = ux * ty - uy * tx
+    s = 0.0
+    if across != 0.0:
+        s = ((d.x - a.x) * ty - (d.y - a.y) * tx) / across
+    return s > 0.0, CellPoint(a.y + s * uy, a.x + s * ux)
+
+
 @allocating
 def join_close(blocked: Bytes, points: Points, radius: float) -> Points:
     """Replace two corners closer than ``FINEST`` by the one where the lines to them meet, if clear."""
@@ -143,24 +155,18 @@ def join_close(blocked: Bytes, points: Points, radius: float) -> Points:
     i = 1
     while i < len(points):
         here = point(points, i)
-        if count >= 2 and i + 1 < len(points):
+        if count >= 2 and i + 1 < len(points) and distance(here, point(line, count - 1)) < FINEST:
             a, b, d = point(line, count - 2), point(line, count - 1), point(points, i + 1)
-            if distance(here, b) < FINEST:
-                uy, ux = b.y - a.y, b.x - a.x
-                ty, tx = here.y - d.y, here.x - d.x
-                across = ux * ty - uy * tx
-                if across != 0.0:
-                    s = ((d.x - a.x) * ty - (d.y - a.y) * tx) / across
-                    meeting = CellPoint(a.y + s * uy, a.x + s * ux)
-                    if (
-                        s > 0.0
-                        and distance(b, meeting) < FINEST
-                        and is_clear(blocked, a, meeting, radius)
-                        and is_clear(blocked, meeting, d, radius)
-                    ):
-                        put(line, count - 1, meeting)
-                        i += 1
-                        continue
+            meets, corner = crossing(a, b, here, d)
+            if (
+                meets
+                and distance(b, corner) < FINEST
+                and is_clear(blocked, a, corner, radius)
+                and is_clear(blocked, corner, d, radius)
+            ):
+                put(line, count - 1, corner)
+                i += 1
+                continue
         count = append(line, count, here)
         i += 1
     return line[:count].copy()

@@ -35,7 +35,7 @@ def warm_up() -> None:
     """
     robots = list(_robots())
     for _, world, navigator in robots:
-        _choose_unseeing(navigator, world)
+        _choose_without_scan(navigator, world)
     # They turn where they stand, for which the polygon has no room, and drive along a path.
     for robot, world, navigator in robots:
         start = world.pose[:2]
@@ -83,8 +83,8 @@ def _drive(navigator: Navigator, world: World, ticks: int) -> None:
         world.step(navigator.command(state, world.scan()), PERIOD)
 
 
-def _choose_unseeing(navigator: Navigator, world: World) -> None:
-    """Choose a command before the first scan: only guidance and dynamic window are compiled."""
+def _choose_without_scan(navigator: Navigator, world: World) -> None:
+    """Choose a command before the first scan: compiles guidance and dynamic window alone."""
     sensing, driving = navigator.sensing, navigator.driving
     state = RobotState(world.time, world.pose, world.twist)
     obstacles = [MovingObstacle(5.0, 2.2, -1.0, 0.0, 0.3)]
